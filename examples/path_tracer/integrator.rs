@@ -1,0 +1,199 @@
+//! Path tracing: what radiance arrives along a ray.
+//!
+//! Unidirectional, with direct light sampled at every diffuse vertex (Kajiya, "The Rendering
+//! Equation", SIGGRAPH 1986). The sky is the exception: it is found by the paths that escape.
+
+use std::f32::consts::FRAC_1_PI;
+
+use bvhkit::{Primitive, Ray};
+use glam::Vec3;
+use rand::RngExt;
+use rand_pcg::Pcg32;
+
+use crate::lights::Lights;
+use crate::sampling;
+use crate::scene::{Material, Scene};
+use crate::tracer::{Caster, Hit};
+
+/// After this many bounces Russian roulette decides whether a path goes on.
+const ROULETTE_START: u32 = 3;
+
+pub struct Integrator<'a> {
+    scene: &'a Scene,
+    lights: Lights<'a>,
+    max_bounces: u32,
+    /// How far from the surface new rays start.
+    offset: f32,
+}
+
+impl<'a> Integrator<'a> {
+    pub fn new(scene: &'a Scene, max_bounces: u32) -> Self {
+        let offset = spawn_offset(scene);
+        Self { scene, lights: Lights::new(scene), max_bounces, offset }
+    }
+
+    /// The radiance that arrives at the origin of `ray`: an estimate by one path.
+    pub fn radiance(&self, ray: &Ray, caster: &mut Caster<'_>, rng: &mut Pcg32) -> Vec3 {
+        let mut ray = *ray;
+        let mut radiance = Vec3::ZERO;
+        let mut throughput = Vec3::ONE;
+        // Whether the light that the ray may meet was out of reach for the direct sampling.
+        let mut sees_emitters = true;
+
+        for bounce in 0.. {
+            let Some(hit) = caster.closest_hit(&ray) else {
+                let direction = Vec3::from(ray.direction);
+                let sky = self.scene.sky.map_or(Vec3::ZERO, |sky| sky.radiance(direction));
+                return radiance + throughput * sky;
+            };
+            let vertex = self.vertex(&ray, &hit);
+            let direction = match *self.scene.material(hit.index) {
+                Material::Emitter { radiance: emitted } => {
+                    let visible = sees_emitters && vertex.front;
+                    return if visible { radiance + throughput * emitted } else { radiance };
+                }
+                Material::Diffuse { albedo } => {
+                    throughput *= albedo;
+                    radiance += throughput * self.direct(&vertex, caster, rng);
+                    sees_emitters = false;
+                    sampling::cosine_hemisphere(vertex.shading, rng)
+                }
+                Material::Mirror { reflectance } => {
+                    throughput *= reflectance;
+                    sees_emitters = true;
+                    Vec3::from(ray.direction).reflect(vertex.shading)
+                }
+                Material::Glass { transmittance, ior } => {
+                    sees_emitters = true;
+                    let eta = if vertex.front { 1.0 / ior } else { ior };
+                    let incoming = Vec3::from(ray.direction);
+                    let (direction, refracted) = scatter_glass(incoming, vertex.shading, eta, rng);
+                    if refracted {
+                        throughput *= transmittance;
+                    }
+                    direction
+                }
+            };
+            // A shading normal can send a ray to the wrong side of the surface: it is lost there.
+            let crosses = direction.dot(vertex.geometric) < 0.0;
+            let transmits = matches!(self.scene.material(hit.index), Material::Glass { .. });
+            if bounce == self.max_bounces || (crosses && !transmits) {
+                return radiance;
+            }
+            if bounce >= ROULETTE_START {
+                let survival = throughput.max_element().min(0.95);
+                if rng.random::<f32>() >= survival {
+                    return radiance;
+                }
+                throughput /= survival;
+            }
+            ray = Ray::new(self.spawn(&vertex, direction), direction);
+        }
+        radiance
+    }
+
+    /// The light that reaches a diffuse vertex straight from the lights, as reflected by a white
+    /// surface.
+    fn direct(&self, vertex: &Vertex, caster: &mut Caster<'_>, rng: &mut Pcg32) -> Vec3 {
+        let start = self.spawn(vertex, vertex.geometric);
+        let mut irradiance = Vec3::ZERO;
+        for sample in self.lights.samples(start, rng) {
+            let cos = sample.direction.dot(vertex.shading);
+            let in_front = cos > 0.0 && sample.direction.dot(vertex.geometric) > 0.0;
+            if in_front && !caster.any_hit(&sample.shadow_ray) {
+                irradiance += cos * sample.irradiance;
+            }
+        }
+        FRAC_1_PI * irradiance
+    }
+
+    /// What the camera ray's first surface looks like as a colour: its shading normal.
+    pub fn normal_color(&self, ray: &Ray, caster: &mut Caster<'_>) -> Vec3 {
+        let hit = caster.closest_hit(ray);
+        hit.map_or(Vec3::ZERO, |hit| 0.5 * self.vertex(ray, &hit).shading + 0.5)
+    }
+
+    fn vertex(&self, ray: &Ray, hit: &Hit) -> Vertex {
+        let point = Vec3::from(ray.at(hit.t));
+        let direction = Vec3::from(ray.direction);
+        let outward = self.scene.shapes[hit.index].normal(point);
+        let front = direction.dot(outward) < 0.0;
+        let geometric = if front { outward } else { -outward };
+        let shading = match (self.scene.surfaces[hit.index].normals, hit.payload) {
+            (Some([a, b, c]), Some(at)) => (1.0 - at.u - at.v) * a + at.u * b + at.v * c,
+            _ => geometric,
+        };
+        let shading = shading.normalize_or(geometric);
+        // Near a silhouette the interpolated normal may face away from the ray.
+        let shading = if shading.dot(geometric) < 0.0 { -shading } else { shading };
+        Vertex { point, geometric, shading, front }
+    }
+
+    /// The origin for a ray that leaves the vertex in `direction`: a little off the surface, so
+    /// that it does not meet the surface again.
+    fn spawn(&self, vertex: &Vertex, direction: Vec3) -> Vec3 {
+        let side = if direction.dot(vertex.geometric) < 0.0 { -1.0 } else { 1.0 };
+        vertex.point + side * self.offset * vertex.geometric
+    }
+}
+
+/// Where a path meets a surface.
+struct Vertex {
+    point: Vec3,
+    /// The geometric and the shading normal, on the side that the ray came from.
+    geometric: Vec3,
+    shading: Vec3,
+    /// Whether the ray came to the front; for a glass body: from outside.
+    front: bool,
+}
+
+/// How far off a surface a ray must start to miss it: some hundred times the rounding error of the
+/// scene's largest coordinate.
+fn spawn_offset(scene: &Scene) -> f32 {
+    let coordinates = scene.shapes.iter().map(|shape| {
+        let aabb = shape.aabb();
+        Vec3::from(aabb.min).abs().max(Vec3::from(aabb.max).abs()).max_element()
+    });
+    100.0 * f32::EPSILON * coordinates.fold(0.0, f32::max)
+}
+
+/// Reflects or refracts at a smooth dielectric, each as often as Fresnel's equations give it light.
+/// `eta` is the ratio of the refractive indices, from the incoming ray's side to the other. Also
+/// tells whether the direction was refracted.
+fn scatter_glass(incoming: Vec3, normal: Vec3, eta: f32, rng: &mut Pcg32) -> (Vec3, bool) {
+    let cos_in = (-incoming.dot(normal)).clamp(0.0, 1.0);
+    let sin2_out = eta * eta * (1.0 - cos_in * cos_in);
+    let reflected = incoming.reflect(normal);
+    if sin2_out >= 1.0 {
+        return (reflected, false);
+    }
+    let cos_out = (1.0 - sin2_out).sqrt();
+    let parallel = (cos_in - eta * cos_out) / (cos_in + eta * cos_out);
+    let perpendicular = (eta * cos_in - cos_out) / (eta * cos_in + cos_out);
+    let reflectance = 0.5 * (parallel * parallel + perpendicular * perpendicular);
+    if rng.random::<f32>() < reflectance {
+        (reflected, false)
+    } else {
+        (eta * incoming + (eta * cos_in - cos_out) * normal, true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn glass_obeys_snell_and_reflects_four_percent_head_on() {
+        let mut rng = sampling::pixel_rng(1);
+        let incoming = Vec3::new(0.6, -0.8, 0.0);
+        let refracted = std::iter::repeat_with(|| scatter_glass(incoming, Vec3::Y, 1.0 / 1.5, &mut rng))
+            .find_map(|(direction, refracted)| refracted.then_some(direction))
+            .unwrap();
+        assert!((refracted.x - 0.6 / 1.5).abs() < 1e-6 && refracted.is_normalized());
+
+        let count = 50_000;
+        let reflections =
+            (0..count).filter(|_| !scatter_glass(Vec3::NEG_Y, Vec3::Y, 1.0 / 1.5, &mut rng).1).count();
+        assert!((reflections as f32 / count as f32 - 0.04).abs() < 0.005);
+    }
+}

@@ -1,0 +1,37 @@
+//! The program's lines on standard output. A closed pipe is not an error: the picture is what
+//! matters.
+
+use std::fmt::Display;
+use std::io::Write;
+use std::time::{Duration, Instant};
+
+/// Prints a line.
+pub fn line(text: impl Display) {
+    let _ = writeln!(std::io::stdout(), "[PathTracer] {text}");
+}
+
+/// Prints text as it is, for tables.
+pub fn plain(text: impl Display) {
+    let _ = writeln!(std::io::stdout(), "{text}");
+}
+
+/// Runs a step of the program between the two halves of a line: what it is, and how it ended.
+/// `done` words a success from the time that the step took.
+pub fn step<T, E>(
+    text: impl Display,
+    done: impl Fn(Duration) -> String,
+    run: impl FnOnce() -> Result<T, E>,
+) -> Result<T, E> {
+    let mut out = std::io::stdout();
+    let _ = write!(out, "[PathTracer] {text}... ").and_then(|()| out.flush());
+    let start = Instant::now();
+    let result = run();
+    let end = if result.is_ok() { done(start.elapsed()) } else { "Failed.".to_owned() };
+    let _ = writeln!(out, "{end}");
+    result
+}
+
+/// The usual end of a step.
+pub fn done(time: Duration) -> String {
+    format!("Done! ({:.4} sec)", time.as_secs_f64())
+}

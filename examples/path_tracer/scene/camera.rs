@@ -1,0 +1,61 @@
+//! The pinhole camera.
+
+use bvhkit::Ray;
+use glam::{Mat4, Vec2, Vec3};
+
+/// A pinhole camera: where it is, how it is turned and how much it sees.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    pub position: Vec3,
+    right: Vec3,
+    up: Vec3,
+    pub forward: Vec3,
+    /// Half the image's height at distance 1: the tangent of half the vertical field of view.
+    half_height: f32,
+    /// Width over height, where the file says.
+    pub aspect: Option<f32>,
+}
+
+impl Camera {
+    /// The camera of a scene graph's node: it looks along the node's -z with +y up, the convention
+    /// that COLLADA and glTF share. The vertical field of view `yfov` is in radians.
+    pub fn from_node(node: &Mat4, yfov: f32, aspect: Option<f32>) -> Self {
+        Self {
+            position: node.transform_point3(Vec3::ZERO),
+            right: node.transform_vector3(Vec3::X).normalize_or(Vec3::X),
+            up: node.transform_vector3(Vec3::Y).normalize_or(Vec3::Y),
+            forward: node.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z),
+            half_height: (0.5 * yfov).tan(),
+            aspect,
+        }
+    }
+
+    /// The camera at `position` that has `target` in the middle of its picture.
+    pub fn look_at(position: Vec3, target: Vec3, up: Vec3, yfov: f32) -> Self {
+        let forward = (target - position).normalize_or(Vec3::NEG_Z);
+        let right = forward.cross(up).try_normalize();
+        let right = right.unwrap_or_else(|| forward.any_orthonormal_vector());
+        Self {
+            position,
+            right,
+            up: right.cross(forward),
+            forward,
+            half_height: (0.5 * yfov).tan(),
+            aspect: None,
+        }
+    }
+
+    /// The ray through a point of the image, given as fractions of its width and height from the
+    /// upper left corner. `aspect` is that of the image.
+    pub fn ray(&self, image: Vec2, aspect: f32) -> Ray {
+        let x = (2.0 * image.x - 1.0) * self.half_height * aspect;
+        let y = (1.0 - 2.0 * image.y) * self.half_height;
+        let direction = self.forward + x * self.right + y * self.up;
+        Ray::new(self.position, direction.normalize())
+    }
+
+    /// The direction to the right of the picture.
+    pub fn right(&self) -> Vec3 {
+        self.right
+    }
+}

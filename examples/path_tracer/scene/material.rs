@@ -1,0 +1,25 @@
+//! The four materials: diffuse, mirror, glass, emitter.
+
+use glam::Vec3;
+
+/// How a surface answers to light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Material {
+    /// Lambert's ideal diffuse reflection.
+    Diffuse { albedo: Vec3 },
+    /// Ideal specular reflection.
+    Mirror { reflectance: Vec3 },
+    /// A smooth dielectric: reflects and refracts by Fresnel's equations.
+    Glass { transmittance: Vec3, ior: f32 },
+    /// Emits from its front, reflects nothing.
+    Emitter { radiance: Vec3 },
+}
+
+impl Material {
+    /// What a surface is made of where the file does not say.
+    pub const GREY: Self = Self::Diffuse { albedo: Vec3::splat(0.6) };
+
+    pub fn is_emitter(&self) -> bool {
+        matches!(self, Self::Emitter { .. })
+    }
+}

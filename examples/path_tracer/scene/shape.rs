@@ -1,0 +1,70 @@
+//! The primitive of the path tracer: a triangle or an analytic sphere, side by side in one tree.
+
+use bvhkit::{Aabb, Barycentrics, Intersect, Primitive, Ray, Sphere, Triangle};
+use glam::Vec3;
+
+/// One primitive of the scene.
+#[derive(Clone, Copy, Debug)]
+pub enum Shape {
+    Triangle(Triangle),
+    Sphere(Sphere),
+}
+
+impl Primitive for Shape {
+    type Scalar = f32;
+
+    fn aabb(&self) -> Aabb {
+        match self {
+            Self::Triangle(triangle) => triangle.aabb(),
+            Self::Sphere(sphere) => sphere.aabb(),
+        }
+    }
+
+    fn centroid(&self) -> [f32; 3] {
+        match self {
+            Self::Triangle(triangle) => triangle.centroid(),
+            Self::Sphere(sphere) => sphere.centroid(),
+        }
+    }
+}
+
+impl Intersect for Shape {
+    /// Where on a triangle; a sphere needs no more than the distance.
+    type Payload = Option<Barycentrics>;
+
+    fn intersect(&self, ray: &Ray) -> Option<(f32, Self::Payload)> {
+        match self {
+            Self::Triangle(triangle) => {
+                let (t, barycentrics) = triangle.intersect(ray)?;
+                Some((t, Some(barycentrics)))
+            }
+            Self::Sphere(sphere) => {
+                let (t, ()) = sphere.intersect(ray)?;
+                Some((t, None))
+            }
+        }
+    }
+}
+
+impl Shape {
+    /// The geometric normal at `point` on the surface, a unit vector: outward for a sphere, the
+    /// side of counterclockwise vertices for a triangle.
+    pub fn normal(&self, point: Vec3) -> Vec3 {
+        match self {
+            Self::Triangle(triangle) => edges_cross(triangle).normalize_or(Vec3::Y),
+            Self::Sphere(sphere) => (point - Vec3::from(sphere.center)).normalize_or(Vec3::Y),
+        }
+    }
+
+    pub fn area(&self) -> f32 {
+        match self {
+            Self::Triangle(triangle) => 0.5 * edges_cross(triangle).length(),
+            Self::Sphere(sphere) => 4.0 * std::f32::consts::PI * sphere.radius * sphere.radius,
+        }
+    }
+}
+
+fn edges_cross(triangle: &Triangle) -> Vec3 {
+    let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(Vec3::from);
+    (b - a).cross(c - a)
+}

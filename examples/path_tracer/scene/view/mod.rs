@@ -1,0 +1,149 @@
+//! A camera and lights for a scene whose file has none, found by casting rays.
+
+mod lighting;
+mod viewpoint;
+
+use bvhkit::{Primitive, Ray};
+use glam::Vec3;
+
+use super::{Scene, Shape};
+
+/// Gives the scene a camera if it has none, and light if nothing shines. `closest_hit` answers a
+/// ray with its first hit: t and the index of the shape.
+pub fn complete(scene: &mut Scene, closest_hit: impl Fn(&Ray) -> Option<(f32, usize)>) {
+    let survey = Survey::new(scene, &closest_hit);
+    let camera = scene.camera.unwrap_or_else(|| viewpoint::choose(&survey));
+    let lighting = (!scene.is_lit()).then(|| lighting::choose(&survey, &camera));
+    let up = survey.up;
+
+    scene.camera = Some(camera);
+    if let Some((lights, sky)) = lighting {
+        scene.lights = lights;
+        scene.sky = Some(sky);
+    } else if scene.sky.is_none() && lighting::is_sunlight_only(scene) {
+        // Where the sun shines there is a sky, and shadows are not black.
+        scene.sky = Some(super::Sky::day(up).scaled(0.35));
+    }
+}
+
+/// What there is to see, and where.
+struct Survey<'a> {
+    scene: &'a Scene,
+    closest_hit: &'a dyn Fn(&Ray) -> Option<(f32, usize)>,
+    /// The part of the scene worth looking at.
+    region: Region,
+    up: Vec3,
+}
+
+/// Where a ray ends.
+#[derive(Clone, Copy)]
+struct Sight {
+    t: f32,
+    point: Vec3,
+    /// The geometric normal, on the side that the ray came from.
+    normal: Vec3,
+    /// Whether the ray met the front, so that its origin is not inside of something solid.
+    front: bool,
+}
+
+impl<'a> Survey<'a> {
+    fn new(scene: &'a Scene, closest_hit: &'a dyn Fn(&Ray) -> Option<(f32, usize)>) -> Self {
+        let region = Region::of_interest(&scene.shapes);
+        let up = scene.up.unwrap_or_else(|| region.likely_up());
+        Self { scene, closest_hit, region, up }
+    }
+
+    /// What the ray sees first.
+    fn look(&self, ray: &Ray) -> Option<Sight> {
+        let (t, index) = (self.closest_hit)(ray)?;
+        let point = Vec3::from(ray.at(t));
+        let normal = self.scene.shapes[index].normal(point);
+        let front = normal.dot(Vec3::from(ray.direction)) < 0.0;
+        Some(Sight { t, point, normal: if front { normal } else { -normal }, front })
+    }
+
+    /// Whether nothing blocks the way from a point seen into `direction`, up to `distance`.
+    fn is_clear(&self, from: &Sight, direction: Vec3, distance: f32) -> bool {
+        let start = from.point + 1e-4 * self.region.diagonal() * from.normal;
+        let ray = Ray::new(start, direction).with_interval(0.0, distance);
+        from.normal.dot(direction) > 0.0 && (self.closest_hit)(&ray).is_none()
+    }
+}
+
+/// A box.
+#[derive(Clone, Copy)]
+struct Region {
+    min: Vec3,
+    max: Vec3,
+}
+
+impl Region {
+    /// The box of all shapes; or, if most shapes crowd into a small part of it, that part: a ship
+    /// in front of a backdrop is what the picture is about, not the backdrop.
+    fn of_interest(shapes: &[Shape]) -> Self {
+        let boxes = shapes.iter().map(Shape::aabb);
+        let all = boxes.map(|aabb| Self { min: aabb.min.into(), max: aabb.max.into() });
+        let all = all.reduce(|a, b| Self { min: a.min.min(b.min), max: a.max.max(b.max) });
+        let all = all.unwrap_or(Self { min: Vec3::ZERO, max: Vec3::ONE });
+
+        let mut low = Vec3::ZERO;
+        let mut high = Vec3::ZERO;
+        for axis in 0..3 {
+            let mut centers: Vec<f32> = shapes.iter().map(|shape| shape.centroid()[axis]).collect();
+            centers.sort_unstable_by(f32::total_cmp);
+            low[axis] = centers[centers.len() / 50];
+            high[axis] = centers[centers.len() - 1 - centers.len() / 50];
+        }
+        let margin = 0.1 * (high - low);
+        let crowd = Self { min: low - margin, max: high + margin };
+        if crowd.diagonal() < 0.4 * all.diagonal() { crowd } else { all }
+    }
+
+    /// +y, unless the box is flat in z: what lies flat, lies on the ground.
+    fn likely_up(&self) -> Vec3 {
+        let size = self.max - self.min;
+        if size.z < 0.4 * size.x.min(size.y) { Vec3::Z } else { Vec3::Y }
+    }
+
+    fn center(&self) -> Vec3 {
+        0.5 * (self.min + self.max)
+    }
+
+    fn diagonal(&self) -> f32 {
+        self.max.distance(self.min)
+    }
+
+    /// The point at these fractions of the box's sides.
+    fn at(&self, fractions: Vec3) -> Vec3 {
+        self.min + fractions * (self.max - self.min)
+    }
+
+    fn corners(&self) -> impl Iterator<Item = Vec3> {
+        (0..8).map(|i| self.at(Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32)))
+    }
+
+    /// Whether the point is in the box, or outside by no more than rounding.
+    fn contains_nearly(&self, point: Vec3) -> bool {
+        let slack = 1e-3 * (self.max - self.min);
+        point.cmpge(self.min - slack).all() && point.cmple(self.max + slack).all()
+    }
+}
+
+/// `count` directions spread evenly over the sphere: a Fibonacci lattice.
+fn directions(count: usize) -> impl Iterator<Item = Vec3> {
+    let golden_angle = std::f32::consts::PI * (3.0 - 5.0_f32.sqrt());
+    (0..count).map(move |i| {
+        let z = 1.0 - (2 * i + 1) as f32 / count as f32;
+        let (sin, cos) = (i as f32 * golden_angle).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        Vec3::new(r * cos, r * sin, z)
+    })
+}
+
+/// The middles of `columns` by `rows` cells of a picture, as fractions of its sides.
+fn raster(columns: usize, rows: usize) -> impl Iterator<Item = glam::Vec2> {
+    (0..columns * rows).map(move |i| {
+        let (x, y) = (i % columns, i / columns);
+        glam::Vec2::new((x as f32 + 0.5) / columns as f32, (y as f32 + 0.5) / rows as f32)
+    })
+}

@@ -1,0 +1,253 @@
+//! The surface area heuristic on a few planes.
+
+use super::{BuildNode, Heuristic, SahCost, Split};
+use crate::build::parallel;
+use crate::build::reference::PrimRef;
+use crate::geometry::{Aabb, Axis, Scalar};
+
+/// References below which one thread bins a node, above which several do.
+const CHUNK: usize = 1 << 15;
+
+/// The cheapest of `bins - 1` equally spaced planes on each axis, by the surface area heuristic
+/// (Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007).
+///
+/// Centroids are counted into bins over the box around them, each bin with the box around its
+/// primitives; a sweep over the bins then finds the best plane between two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BinnedSah {
+    /// Bins on each axis, 2 to [`MAX_BINS`](Self::MAX_BINS); values outside are clamped.
+    pub bins: usize,
+    /// The costs of a step and of a test.
+    pub cost: SahCost,
+}
+
+impl BinnedSah {
+    /// The largest number of bins.
+    pub const MAX_BINS: usize = 64;
+
+    /// With `bins` bins and both costs 1.
+    pub fn new(bins: usize) -> Self {
+        Self { bins, cost: SahCost::default() }
+    }
+}
+
+impl Default for BinnedSah {
+    /// 16 bins, both costs 1.
+    fn default() -> Self {
+        Self::new(16)
+    }
+}
+
+impl<S: Scalar> Heuristic<S> for BinnedSah {
+    fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
+        let n = node.references.len();
+        let bins = Bins::of(node, self.bins.clamp(2, Self::MAX_BINS));
+        let scale = node.aabb.area_scale();
+        match bins.best_plane(scale) {
+            Some(best)
+                if n > node.max_leaf_size
+                    || !self.cost.prefers_leaf(n, node.aabb.scaled_half_area(scale), best.weighted_area) =>
+            {
+                best.split
+            }
+            _ => Split::Leaf,
+        }
+    }
+}
+
+/// What a bin has gathered.
+#[derive(Clone, Copy)]
+struct Bin<S> {
+    aabb: Aabb<S>,
+    count: usize,
+}
+
+impl<S: Scalar> Bin<S> {
+    const EMPTY: Self = Self { aabb: Aabb::EMPTY, count: 0 };
+
+    #[inline(always)]
+    fn merge(self, other: Self) -> Self {
+        Self { aabb: self.aabb.union(other.aabb), count: self.count + other.count }
+    }
+
+    fn weighted_area(&self, scale: S) -> S {
+        self.aabb.scaled_half_area(scale) * S::from_f64(self.count as f64)
+    }
+}
+
+/// The bins of all three axes.
+#[derive(Clone)]
+struct Bins<S> {
+    bins: [[Bin<S>; BinnedSah::MAX_BINS]; 3],
+    count: usize,
+    origin: [S; 3],
+    /// Bins per unit of length; 0 on an axis without extent.
+    scale: [S; 3],
+}
+
+struct Best<S> {
+    weighted_area: S,
+    split: Split<S>,
+}
+
+impl<S: Scalar> Bins<S> {
+    fn of(node: &BuildNode<'_, S>, count: usize) -> Self {
+        let scale = node.centroids.extent().map(|extent| {
+            let scale = S::from_f64(count as f64) / extent;
+            if scale.is_finite() { scale } else { S::ZERO }
+        });
+        let empty = Self { bins: [[Bin::EMPTY; _]; 3], count, origin: node.centroids.min, scale };
+        if node.references.len() <= CHUNK {
+            let mut bins = empty;
+            bins.fill(node.references);
+            return bins;
+        }
+        // Minima, maxima and counts: the order of merging leaves no trace.
+        let chunks = node.references.chunks(CHUNK).collect();
+        let parts = parallel::map(chunks, |chunk| {
+            let mut bins = empty.clone();
+            bins.fill(chunk);
+            bins
+        });
+        parts.into_iter().fold(empty, Self::merge)
+    }
+
+    fn fill(&mut self, references: &[PrimRef<S>]) {
+        let last = self.count - 1;
+        for reference in references {
+            for axis in 0..3 {
+                let offset = reference.centroid[axis] - self.origin[axis];
+                let bin = (offset * self.scale[axis]).to_usize().min(last);
+                let bin = &mut self.bins[axis][bin];
+                *bin = Bin { aabb: bin.aabb.union(reference.aabb), count: bin.count + 1 };
+            }
+        }
+    }
+
+    fn merge(mut self, other: Self) -> Self {
+        for axis in 0..3 {
+            for (bin, other) in self.bins[axis][..self.count].iter_mut().zip(&other.bins[axis]) {
+                *bin = bin.merge(*other);
+            }
+        }
+        self
+    }
+
+    /// The plane with the smallest sum of area times count; none if all centroids are in one bin.
+    fn best_plane(&self, area_scale: S) -> Option<Best<S>> {
+        let mut best: Option<Best<S>> = None;
+        for axis in Axis::ALL {
+            let bins = &self.bins[axis.index()][..self.count];
+            // From the right, the cost of everything from a bin on; then from the left.
+            let mut right_cost = [S::ZERO; BinnedSah::MAX_BINS];
+            let mut right = Bin::EMPTY;
+            for i in (1..bins.len()).rev() {
+                right = right.merge(bins[i]);
+                right_cost[i] = right.weighted_area(area_scale);
+            }
+            let total = right.count + bins[0].count;
+            let mut left = Bin::EMPTY;
+            for i in 1..bins.len() {
+                left = left.merge(bins[i - 1]);
+                if left.count == 0 || left.count == total {
+                    continue;
+                }
+                let weighted_area = left.weighted_area(area_scale) + right_cost[i];
+                if best.as_ref().is_none_or(|best| weighted_area < best.weighted_area) {
+                    let axis_scale = self.scale[axis.index()];
+                    let position = self.origin[axis.index()] + S::from_f64(i as f64) / axis_scale;
+                    best = Some(Best { weighted_area, split: Split::Plane { axis, position } });
+                }
+            }
+        }
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::build::reference::Extent;
+    use alloc::vec::Vec;
+
+    fn split_of(references: &[PrimRef], heuristic: BinnedSah, max_leaf_size: usize) -> Split {
+        let extent = Extent::of(references);
+        heuristic.split(&BuildNode {
+            aabb: extent.aabb,
+            centroids: extent.centroids,
+            references,
+            depth: 0,
+            max_leaf_size,
+        })
+    }
+
+    fn unit_boxes(positions: &[f32]) -> Vec<PrimRef> {
+        positions
+            .iter()
+            .enumerate()
+            .map(|(i, &x)| PrimRef {
+                aabb: Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]),
+                centroid: [x + 0.5, 0.5, 0.5],
+                index: i as u32,
+            })
+            .collect()
+    }
+
+    #[test]
+    fn two_clusters_are_separated() {
+        let references = unit_boxes(&[0.0, 1.0, 2.0, 100.0, 101.0]);
+        match split_of(&references, BinnedSah::default(), 1) {
+            Split::Plane { axis: Axis::X, position } => assert!(position > 3.0 && position < 100.0),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn overlapping_boxes_are_left_together_only_where_a_leaf_may_hold_them() {
+        let references = unit_boxes(&[0.0, 0.01, 0.02]);
+        assert_eq!(split_of(&references, BinnedSah::default(), 4), Split::Leaf);
+        assert!(matches!(split_of(&references, BinnedSah::default(), 2), Split::Plane { .. }));
+    }
+
+    #[test]
+    fn a_dear_test_splits_what_a_dear_step_leaves_together() {
+        let references = unit_boxes(&[0.0, 0.5, 1.0, 1.5]);
+        let with = |traversal, intersection| BinnedSah { bins: 8, cost: SahCost { traversal, intersection } };
+        assert_eq!(split_of(&references, with(9.0, 1.0), 4), Split::Leaf);
+        assert!(matches!(split_of(&references, with(0.1, 1.0), 4), Split::Plane { .. }));
+    }
+
+    #[test]
+    fn coincident_centroids_and_absurd_bin_counts_are_answered() {
+        assert_eq!(split_of(&unit_boxes(&[1.0; 9]), BinnedSah::default(), 2), Split::Leaf);
+        for bins in [0, 1, usize::MAX] {
+            assert!(matches!(
+                split_of(&unit_boxes(&[0.0, 9.0]), BinnedSah::new(bins), 1),
+                Split::Plane { .. }
+            ));
+        }
+    }
+
+    #[test]
+    fn chunks_change_nothing() {
+        let positions: Vec<f32> = (0..3 * CHUNK).map(|i| (i * 7919 % 10_007) as f32).collect();
+        let references = unit_boxes(&positions);
+        let extent = Extent::of(&references);
+        let node = BuildNode {
+            aabb: extent.aabb,
+            centroids: extent.centroids,
+            references: &references,
+            depth: 0,
+            max_leaf_size: 1,
+        };
+        let chunked = Bins::of(&node, 16);
+        let mut whole = Bins::of(&BuildNode { references: &references[..1], ..node }, 16);
+        whole.fill(&references[1..]);
+        for axis in 0..3 {
+            for i in 0..16 {
+                assert_eq!(chunked.bins[axis][i].count, whole.bins[axis][i].count);
+                assert_eq!(chunked.bins[axis][i].aabb, whole.bins[axis][i].aabb);
+            }
+        }
+    }
+}

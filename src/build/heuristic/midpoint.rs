@@ -1,0 +1,21 @@
+//! Equal halves by length.
+
+use super::{BuildNode, Heuristic, Split};
+use crate::geometry::Scalar;
+
+/// Splits the longest axis of the box around the centroids in its middle.
+///
+/// The middle of the centroids' box, not of the node's: unless all centroids are one point (or
+/// adjacent numbers), there is one on either side, so no side is ever empty.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Midpoint;
+
+impl<S: Scalar> Heuristic<S> for Midpoint {
+    fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
+        if node.references.len() <= node.max_leaf_size {
+            return Split::Leaf;
+        }
+        let axis = node.centroids.longest_axis();
+        Split::Plane { axis, position: node.centroids.center()[axis.index()] }
+    }
+}

@@ -1,0 +1,104 @@
+//! Where to split a node: the seam for one's own ideas, and the classic ones.
+//!
+//! | heuristic | splits | paper |
+//! |---|---|---|
+//! | [`Median`] | longest axis, equal halves | Kay and Kajiya 1986 |
+//! | [`Midpoint`] | longest axis, equal lengths | |
+//! | [`BinnedSah`] | the cheapest of some planes by the surface area heuristic | Wald 2007 |
+//! | [`SweepSah`] | the cheapest of all splits by the same | MacDonald and Booth 1990 |
+
+mod binned_sah;
+mod median;
+mod midpoint;
+mod sah;
+mod sweep_sah;
+
+pub use binned_sah::BinnedSah;
+pub use median::Median;
+pub use midpoint::Midpoint;
+pub use sah::SahCost;
+pub use sweep_sah::SweepSah;
+
+use super::reference::PrimRef;
+use crate::geometry::{Aabb, Axis, Scalar};
+
+/// Decides how a node is split: one pure function.
+///
+/// What it proposes is only a proposal. The driver splits in equal halves instead where a side would
+/// be empty, where the depth bound ([`MAX_DEPTH`](crate::MAX_DEPTH)) would be broken, or where a leaf
+/// is proposed for more than [`max_leaf_size`](BuildNode::max_leaf_size) primitives. So a bad
+/// heuristic makes a slow tree, never a broken one.
+///
+/// Called from several threads at once. A type parameter of the builder, so it costs what it
+/// computes; `&dyn Heuristic<f32>` is one too, for a choice at run time.
+///
+/// ```
+/// use bvhkit::heuristic::{BuildNode, Heuristic, Split};
+/// use bvhkit::{Bvh, Ray, Sphere};
+///
+/// /// Splits the axis along which centroids spread most, at their mean.
+/// struct Mean;
+///
+/// impl Heuristic<f32> for Mean {
+///     fn split(&self, node: &BuildNode<f32>) -> Split<f32> {
+///         if node.references.len() <= node.max_leaf_size {
+///             return Split::Leaf;
+///         }
+///         let axis = node.centroids.longest_axis();
+///         let sum: f32 = node.references.iter().map(|r| r.centroid[axis.index()]).sum();
+///         Split::Plane { axis, position: sum / node.references.len() as f32 }
+///     }
+/// }
+///
+/// let spheres: Vec<Sphere> = (0..50).map(|i| Sphere::new([(i * i) as f32, 0.0, 0.0], 0.5)).collect();
+/// let bvh = Bvh::builder().heuristic(Mean).max_leaf_size(2).build(&spheres)?;
+/// assert!(bvh.any_hit(&Ray::new([49.0, -9.0, 0.0], [0.0, 1.0, 0.0])));
+/// println!("{}", bvh.report());
+/// # Ok::<(), bvhkit::BuildError>(())
+/// ```
+pub trait Heuristic<S: Scalar>: Sync {
+    /// Proposes how to split `node`, which has at least two references.
+    fn split(&self, node: &BuildNode<'_, S>) -> Split<S>;
+}
+
+impl<S: Scalar, H: Heuristic<S> + ?Sized> Heuristic<S> for &H {
+    fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
+        (**self).split(node)
+    }
+}
+
+/// A node to be split, as a heuristic sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct BuildNode<'a, S = f32> {
+    /// The box around its primitives.
+    pub aabb: Aabb<S>,
+    /// The box around their centroids.
+    pub centroids: Aabb<S>,
+    /// Its primitives, at least two, in no particular order.
+    pub references: &'a [PrimRef<S>],
+    /// Its depth; the root has 0.
+    pub depth: usize,
+    /// The largest number of primitives for which [`Split::Leaf`] is accepted.
+    pub max_leaf_size: usize,
+}
+
+/// What a heuristic proposes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Split<S = f32> {
+    /// No split: make a leaf.
+    Leaf,
+    /// Left, the references with `centroid[axis] < position`; right, the others.
+    Plane {
+        /// The axis across which the plane lies.
+        axis: Axis,
+        /// The plane's coordinate on it.
+        position: S,
+    },
+    /// Left, the `left` references with the smallest `centroid[axis]`, equal ones by index.
+    Count {
+        /// The axis along which to count.
+        axis: Axis,
+        /// How many go left.
+        left: usize,
+    },
+}

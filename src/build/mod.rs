@@ -1,0 +1,19 @@
+//! From primitives to a tree: one top-down driver for every heuristic.
+//!
+//! ```text
+//! primitives -> references (box, centroid, index) -> driver, asking the heuristic -> tree
+//! ```
+//!
+//! The driver alone partitions references, bounds the depth and falls back to equal halves, so
+//! that a bad heuristic makes a slow tree, never a broken one.
+
+mod divide;
+mod driver;
+pub mod heuristic;
+mod parallel;
+mod reference;
+
+pub(crate) use driver::build_tree;
+pub use parallel::ThreadPoolError;
+pub(crate) use parallel::in_pool;
+pub use reference::PrimRef;

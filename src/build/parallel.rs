@@ -1,0 +1,56 @@
+//! The one place that knows of threads. Results never depend on their number.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt;
+
+/// The thread pool that was asked for could not be started.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ThreadPoolError {
+    /// How many threads were asked for.
+    pub threads: usize,
+    /// What the operating system said.
+    pub reason: String,
+}
+
+impl fmt::Display for ThreadPoolError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "no pool of {} threads could be started ({}): ask for fewer", self.threads, self.reason)
+    }
+}
+
+impl core::error::Error for ThreadPoolError {}
+
+/// Applies `f` to each item, results in the items' order. A single item is done on the spot, so
+/// that small builds never wake a thread.
+#[cfg(feature = "rayon")]
+pub(super) fn map<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
+    use rayon::prelude::*;
+    if items.len() < 2 { items.into_iter().map(f).collect() } else { items.into_par_iter().map(f).collect() }
+}
+
+/// Applies `f` to each item, results in the items' order.
+#[cfg(not(feature = "rayon"))]
+pub(super) fn map<T, R>(items: Vec<T>, f: impl Fn(T) -> R) -> Vec<R> {
+    items.into_iter().map(f).collect()
+}
+
+/// Runs `f` where [`map`] has `threads` threads; with `None`, those of the pool it is called in.
+#[cfg(feature = "rayon")]
+pub(crate) fn in_pool<R: Send>(
+    threads: Option<usize>,
+    f: impl FnOnce() -> R + Send,
+) -> Result<R, ThreadPoolError> {
+    use alloc::string::ToString;
+    let Some(threads) = threads else { return Ok(f()) };
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => Ok(pool.install(f)),
+        Err(error) => Err(ThreadPoolError { threads, reason: error.to_string() }),
+    }
+}
+
+/// Without threads, `f` runs on the caller's.
+#[cfg(not(feature = "rayon"))]
+pub(crate) fn in_pool<R>(_threads: Option<usize>, f: impl FnOnce() -> R) -> Result<R, ThreadPoolError> {
+    Ok(f())
+}

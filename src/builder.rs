@@ -1,0 +1,260 @@
+//! The options of a build, and what may be wrong with its input.
+
+use crate::build::heuristic::{BinnedSah, BuildNode, Heuristic, Split, SweepSah};
+use crate::build::{PrimRef, ThreadPoolError, build_tree, in_pool};
+use crate::bvh::Bvh;
+use crate::geometry::Scalar;
+use crate::primitive::Primitive;
+use alloc::vec::Vec;
+use core::fmt;
+use core::marker::PhantomData;
+
+/// How much time a build may take for how quick a tree.
+///
+/// A preset chooses a heuristic; the README has the figures. To choose for yourself:
+/// [`Builder::heuristic`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Quality {
+    /// The quickest build that is still a surface area heuristic: 8 bins.
+    Fast,
+    /// 16 bins.
+    #[default]
+    Balanced,
+    /// Every split tried.
+    High,
+}
+
+impl<S: Scalar> Heuristic<S> for Quality {
+    fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
+        match self {
+            Self::Fast => BinnedSah::new(8).split(node),
+            Self::Balanced => BinnedSah::new(16).split(node),
+            Self::High => SweepSah::default().split(node),
+        }
+    }
+}
+
+/// What to do with a primitive whose box or centroid has a NaN or an infinity, or whose box has a
+/// minimum above its maximum.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum OnInvalid {
+    /// Fail with [`BuildError::InvalidPrimitive`], which names the first.
+    #[default]
+    Reject,
+    /// Leave it out, so that nothing hits it, and list it in [`Bvh::skipped`]. The others keep
+    /// their indices.
+    Skip,
+}
+
+/// Why a build failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// A primitive has a box or a centroid that is no place in space, and
+    /// [`OnInvalid::Reject`] is in force.
+    InvalidPrimitive {
+        /// Its index in the input.
+        index: usize,
+        /// What is wrong with it.
+        flaw: Flaw,
+    },
+    /// More primitives than 32 bits can number, 2^32 - 1. Found before anything is allocated if the
+    /// input tells its length.
+    TooManyPrimitives {
+        /// How many there are at least.
+        count: usize,
+    },
+    /// `max_leaf_size` is 0.
+    ZeroLeafSize,
+    /// The threads asked for could not be had.
+    ThreadPool(ThreadPoolError),
+}
+
+/// What is wrong with a primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flaw {
+    /// A bound of its box is NaN.
+    NanBox,
+    /// A bound of its box is infinite.
+    InfiniteBox,
+    /// Its box has a minimum above its maximum.
+    InvertedBox,
+    /// Its centroid has a NaN or an infinity.
+    Centroid,
+}
+
+impl fmt::Display for BuildError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::InvalidPrimitive { index, flaw } => {
+                let what = match flaw {
+                    Flaw::NanBox => "a bounding box with a NaN",
+                    Flaw::InfiniteBox => "a bounding box with an infinite bound",
+                    Flaw::InvertedBox => "a bounding box whose minimum is above its maximum",
+                    Flaw::Centroid => "a centroid with a NaN or an infinity",
+                };
+                write!(f, "primitive {index} has {what}: repair it, or build with OnInvalid::Skip")
+            }
+            Self::TooManyPrimitives { count } => {
+                write!(f, "{count} primitives or more, but indices have 32 bits: split the scene")
+            }
+            Self::ZeroLeafSize => {
+                f.write_str("max_leaf_size is 0, but a leaf has a primitive: give 1 or more")
+            }
+            Self::ThreadPool(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for BuildError {}
+
+/// The options of a build; from [`Bvh::builder`].
+///
+/// ```
+/// use bvhkit::heuristic::Median;
+/// use bvhkit::{Bvh, OnInvalid, Quality, Sphere};
+///
+/// let spheres: Vec<Sphere> = (0..100).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.5)).collect();
+/// let quick = Bvh::builder().quality(Quality::Fast).build(&spheres)?;
+/// let simple = Bvh::builder().heuristic(Median).max_leaf_size(1).threads(1).build(&spheres)?;
+/// assert_eq!(simple.report().max_depth, 7);
+///
+/// let broken = [Sphere::new([0.0; 3], 1.0), Sphere::new([f32::NAN; 3], 1.0)];
+/// let error = Bvh::build(&broken).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "primitive 1 has a bounding box with a NaN: repair it, or build with OnInvalid::Skip"
+/// );
+/// let rest = Bvh::builder().on_invalid(OnInvalid::Skip).build(&broken)?;
+/// assert_eq!((rest.len(), rest.skipped()), (1, &[1][..]));
+/// # Ok::<(), bvhkit::BuildError>(())
+/// ```
+#[derive(Debug)]
+pub struct Builder<P, H = Quality> {
+    heuristic: H,
+    max_leaf_size: usize,
+    threads: Option<usize>,
+    on_invalid: OnInvalid,
+    primitive: PhantomData<fn(P)>,
+}
+
+impl<P, H: Clone> Clone for Builder<P, H> {
+    fn clone(&self) -> Self {
+        Self { heuristic: self.heuristic.clone(), ..*self }
+    }
+}
+
+impl<P: Primitive> Builder<P, Quality> {
+    pub(crate) fn new() -> Self {
+        Self {
+            heuristic: Quality::default(),
+            max_leaf_size: 4,
+            threads: None,
+            on_invalid: OnInvalid::default(),
+            primitive: PhantomData,
+        }
+    }
+}
+
+impl<P: Primitive, H: Heuristic<P::Scalar>> Builder<P, H> {
+    /// A preset, in place of the heuristic chosen so far.
+    #[must_use]
+    pub fn quality(self, quality: Quality) -> Builder<P, Quality> {
+        self.heuristic(quality)
+    }
+
+    /// One of [`heuristic`](crate::heuristic)'s, or your own, in place of the one chosen so far.
+    #[must_use]
+    pub fn heuristic<G: Heuristic<P::Scalar>>(self, heuristic: G) -> Builder<P, G> {
+        let Self { max_leaf_size, threads, on_invalid, primitive, .. } = self;
+        Builder { heuristic, max_leaf_size, threads, on_invalid, primitive }
+    }
+
+    /// The largest number of primitives in a leaf, 4 unless set; surface area heuristics make
+    /// smaller ones where that pays. Any number from 1 on; above the number of primitives it means
+    /// that number.
+    #[must_use]
+    pub fn max_leaf_size(self, max_leaf_size: usize) -> Self {
+        Self { max_leaf_size, ..self }
+    }
+
+    /// Builds with a pool of `threads` threads of its own, 0 meaning one for each core. Unless set,
+    /// the build uses rayon's pool that it is called in. Without the feature `rayon` builds use the
+    /// calling thread. The tree is the same in all cases.
+    #[must_use]
+    pub fn threads(self, threads: usize) -> Self {
+        Self { threads: Some(threads), ..self }
+    }
+
+    /// What to do with invalid primitives, [`OnInvalid::Reject`] unless set.
+    #[must_use]
+    pub fn on_invalid(self, on_invalid: OnInvalid) -> Self {
+        Self { on_invalid, ..self }
+    }
+
+    /// Builds the hierarchy over a list, an array, `&mesh`, any iterator of primitives, or
+    /// references to them. O(n log n) for the heuristics of this crate but
+    /// [`SweepSah`](crate::heuristic::SweepSah), at most [`MAX_DEPTH`](crate::MAX_DEPTH) times O(n)
+    /// plus what the heuristic itself takes for any.
+    ///
+    /// No input at all gives an empty hierarchy, which nothing hits.
+    ///
+    /// # Errors
+    /// [`BuildError`], whose messages say what is wrong, where, and what to do.
+    pub fn build(self, primitives: impl IntoIterator<Item = P>) -> Result<Bvh<P>, BuildError> {
+        if self.max_leaf_size == 0 {
+            return Err(BuildError::ZeroLeafSize);
+        }
+        let primitives = collect(primitives.into_iter())?;
+        let (mut references, skipped) = self.references(&primitives)?;
+        let Self { heuristic, max_leaf_size, threads, .. } = &self;
+        let mut tree = in_pool(*threads, || build_tree(&mut references, heuristic, *max_leaf_size))
+            .map_err(BuildError::ThreadPool)?;
+        tree.indices.extend(skipped);
+        Ok(Bvh::from_parts(tree, primitives))
+    }
+
+    /// The references of the valid primitives, and the indices of the others.
+    fn references(&self, primitives: &[P]) -> Result<(Vec<PrimRef<P::Scalar>>, Vec<u32>), BuildError> {
+        let mut references = Vec::with_capacity(primitives.len());
+        let mut skipped = Vec::new();
+        for (index, primitive) in (0..).zip(primitives) {
+            let reference = PrimRef { aabb: primitive.aabb(), centroid: primitive.centroid(), index };
+            match (flaw(&reference), self.on_invalid) {
+                (None, _) => references.push(reference),
+                (Some(_), OnInvalid::Skip) => skipped.push(index),
+                (Some(flaw), OnInvalid::Reject) => {
+                    return Err(BuildError::InvalidPrimitive { index: index as usize, flaw });
+                }
+            }
+        }
+        Ok((references, skipped))
+    }
+}
+
+/// At most 2^32 - 1 items of an iterator.
+fn collect<P>(primitives: impl Iterator<Item = P>) -> Result<Vec<P>, BuildError> {
+    let limit = u32::MAX as usize;
+    let check = |count| if count > limit { Err(BuildError::TooManyPrimitives { count }) } else { Ok(()) };
+    check(primitives.size_hint().0)?;
+    let collected: Vec<P> = primitives.take(limit.saturating_add(1)).collect();
+    check(collected.len())?;
+    Ok(collected)
+}
+
+fn flaw<S: Scalar>(reference: &PrimRef<S>) -> Option<Flaw> {
+    let PrimRef { aabb, centroid, .. } = reference;
+    if aabb.is_valid() && centroid.iter().all(|x| x.is_finite()) {
+        return None;
+    }
+    let bounds = || aabb.min.iter().chain(&aabb.max);
+    Some(if bounds().any(|x| x != x) {
+        Flaw::NanBox
+    } else if aabb.is_valid() {
+        Flaw::Centroid
+    } else if bounds().all(|x| x.is_finite()) || aabb.is_empty() {
+        Flaw::InvertedBox
+    } else {
+        Flaw::InfiniteBox
+    })
+}

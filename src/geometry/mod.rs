@@ -1,0 +1,14 @@
+//! Scalars, boxes and rays: the vocabulary that everything above is written in.
+
+mod aabb;
+mod axis;
+mod ray;
+mod scalar;
+mod slabs;
+
+pub use aabb::Aabb;
+pub use axis::Axis;
+pub use ray::{Ray, RayError};
+pub use scalar::Scalar;
+pub(crate) use scalar::{Vector, max, min};
+pub(crate) use slabs::Slabs;

@@ -1,0 +1,129 @@
+//! The ray: an origin, a direction, and the interval of t that counts.
+
+use super::Scalar;
+use core::fmt;
+
+/// The points `origin + t * direction` with t in the closed interval [`t_min`, `t_max`].
+///
+/// The direction need not be normalised: t is in units of its length. An invalid ray (see
+/// [`validate`](Self::validate)) hits nothing.
+///
+/// ```
+/// use bvhkit::{Ray, RayError};
+/// let ray = Ray::new([0.0, 0.0, -5.0], [0.0, 0.0, 2.0]).with_interval(1e-4, 10.0);
+/// assert_eq!(ray.at(2.0), [0.0, 0.0, -1.0]);
+/// assert_eq!(Ray::<f32>::new([0.0; 3], [0.0; 3]).validate(), Err(RayError::ZeroDirection));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray<S = f32> {
+    /// Where t = 0.
+    pub origin: [S; 3],
+    /// What one unit of t adds to the point.
+    pub direction: [S; 3],
+    /// The smallest t that counts, 0 unless set.
+    pub t_min: S,
+    /// The largest t that counts, infinity unless set.
+    pub t_max: S,
+}
+
+/// Why a ray hits nothing, whatever the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RayError {
+    /// A coordinate of the origin is NaN or infinite.
+    Origin,
+    /// A coordinate of the direction is NaN or infinite.
+    Direction,
+    /// The direction is zero on all three axes.
+    ZeroDirection,
+    /// `t_min` or `t_max` is NaN, or `t_min` exceeds `t_max`.
+    Interval,
+}
+
+impl fmt::Display for RayError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Origin => "the ray's origin has a coordinate that is NaN or infinite: give a finite one",
+            Self::Direction => {
+                "the ray's direction has a coordinate that is NaN or infinite: give a finite one"
+            }
+            Self::ZeroDirection => "the ray's direction is zero on all axes: give one that points somewhere",
+            Self::Interval => "the ray's interval is empty or NaN: give t_min <= t_max",
+        })
+    }
+}
+
+impl core::error::Error for RayError {}
+
+impl<S: Scalar> Ray<S> {
+    /// The ray from `origin` along `direction`, with t in [0, infinity].
+    #[inline(always)]
+    pub fn new(origin: impl Into<[S; 3]>, direction: impl Into<[S; 3]>) -> Self {
+        Self { origin: origin.into(), direction: direction.into(), t_min: S::ZERO, t_max: S::INFINITY }
+    }
+
+    /// The same ray with t in the closed interval [`t_min`, `t_max`]. Infinite ends are allowed.
+    #[inline(always)]
+    #[must_use]
+    pub fn with_interval(self, t_min: S, t_max: S) -> Self {
+        Self { t_min, t_max, ..self }
+    }
+
+    /// The point at `t`, rounded.
+    #[inline(always)]
+    pub fn at(&self, t: S) -> [S; 3] {
+        let ([ox, oy, oz], [dx, dy, dz]) = (self.origin, self.direction);
+        [ox + dx * t, oy + dy * t, oz + dz * t]
+    }
+
+    /// What makes this ray hit nothing, if anything does.
+    pub fn validate(&self) -> Result<(), RayError> {
+        if !self.origin.iter().all(|x| x.is_finite()) {
+            return Err(RayError::Origin);
+        }
+        if !self.direction.iter().all(|x| x.is_finite()) {
+            return Err(RayError::Direction);
+        }
+        if self.direction.iter().all(|&x| x == S::ZERO) {
+            return Err(RayError::ZeroDirection);
+        }
+        // False for NaN too.
+        if self.t_min <= self.t_max { Ok(()) } else { Err(RayError::Interval) }
+    }
+
+    /// The same question as [`validate`](Self::validate), without branches.
+    #[inline(always)]
+    pub(crate) fn is_valid(&self) -> bool {
+        let ([ox, oy, oz], [dx, dy, dz]) = (self.origin, self.direction);
+        let finite = |x: S| x.abs() < S::INFINITY;
+        (finite(ox) & finite(oy) & finite(oz) & finite(dx) & finite(dy) & finite(dz))
+            & ((dx != S::ZERO) | (dy != S::ZERO) | (dz != S::ZERO))
+            & (self.t_min <= self.t_max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn validate_names_what_is_wrong_and_agrees_with_the_quick_check() {
+        let good = Ray::new([0.0f32; 3], [0.0, -0.0, 1e-45]);
+        let cases = [
+            (good, Ok(())),
+            (good.with_interval(2.0, 2.0), Ok(())),
+            (good.with_interval(f32::NEG_INFINITY, f32::INFINITY), Ok(())),
+            (Ray::new([f32::NAN, 0.0, 0.0], [1.0; 3]), Err(RayError::Origin)),
+            (Ray::new([0.0, f32::INFINITY, 0.0], [1.0; 3]), Err(RayError::Origin)),
+            (Ray::new([0.0; 3], [0.0, f32::NAN, 1.0]), Err(RayError::Direction)),
+            (Ray::new([0.0; 3], [0.0, 1.0, f32::NEG_INFINITY]), Err(RayError::Direction)),
+            (Ray::new([0.0; 3], [0.0, -0.0, 0.0]), Err(RayError::ZeroDirection)),
+            (good.with_interval(1.0, 0.5), Err(RayError::Interval)),
+            (good.with_interval(f32::NAN, 1.0), Err(RayError::Interval)),
+            (good.with_interval(0.0, f32::NAN), Err(RayError::Interval)),
+        ];
+        for (ray, expected) in cases {
+            assert_eq!(ray.validate(), expected, "{ray:?}");
+            assert_eq!(ray.is_valid(), expected.is_ok(), "{ray:?}");
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! The two scalars, `f32` and `f64`, behind one sealed trait.
+
+use core::fmt::Debug;
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+/// A coordinate: `f32` or `f64`. Sealed; a bound to write generic code with.
+///
+/// Its arithmetic is the plain IEEE 754 one: no operation is fused or reordered, so that equal
+/// operands give equal bits on every machine.
+pub trait Scalar:
+    sealed::Sealed
+    + Copy
+    + Debug
+    + Default
+    + PartialEq
+    + PartialOrd
+    + Add<Output = Self>
+    + AddAssign
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Send
+    + Sync
+    + 'static
+{
+    /// 0.
+    const ZERO: Self;
+    /// 1.
+    const ONE: Self;
+    /// 0.5.
+    const HALF: Self;
+    /// -infinity.
+    const NEG_INFINITY: Self;
+    /// +infinity.
+    const INFINITY: Self;
+    /// The distance from 1 to the next larger number: twice the largest relative rounding error.
+    const EPSILON: Self;
+
+    /// glam's vector of this scalar, in which the arithmetic of primitives is done.
+    #[doc(hidden)]
+    type Vec3: Vector<Self>;
+
+    /// The absolute value.
+    fn abs(self) -> Self;
+    /// The square root, rounded correctly; NaN below zero.
+    fn sqrt(self) -> Self;
+    /// Neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+    /// The next larger number (the smallest subnormal after zero).
+    fn next_up(self) -> Self;
+    /// The next smaller number.
+    fn next_down(self) -> Self;
+    /// A total order, -0 before +0.
+    fn total_cmp(&self, other: &Self) -> core::cmp::Ordering;
+    /// The nearest scalar to `value`.
+    fn from_f64(value: f64) -> Self;
+    /// Exact for both scalars.
+    fn to_f64(self) -> f64;
+    /// Rounded toward zero; 0 for NaN and below zero, saturating above.
+    fn to_usize(self) -> usize;
+    /// An integer whose unsigned order is the total order of the scalars.
+    fn to_ordered_bits(self) -> u64;
+}
+
+/// The smaller of two, `b` if either is NaN: one `min` instruction.
+#[inline(always)]
+pub(crate) fn min<S: Scalar>(a: S, b: S) -> S {
+    if a < b { a } else { b }
+}
+
+/// The larger of two, `b` if either is NaN: one `max` instruction.
+#[inline(always)]
+pub(crate) fn max<S: Scalar>(a: S, b: S) -> S {
+    if a > b { a } else { b }
+}
+
+/// What the arithmetic of primitives needs of glam's vectors.
+pub trait Vector<S>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<S, Output = Self> {
+    fn from_array(array: [S; 3]) -> Self;
+    fn dot(self, other: Self) -> S;
+    fn cross(self, other: Self) -> Self;
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for f32 {}
+    impl Sealed for f64 {}
+}
+
+macro_rules! scalar {
+    ($scalar:ident, $vec3:ty, $bits:ident, $signed:ident, $libm_sqrt:ident) => {
+        impl Scalar for $scalar {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const HALF: Self = 0.5;
+            const INFINITY: Self = $scalar::INFINITY;
+            const NEG_INFINITY: Self = $scalar::NEG_INFINITY;
+            const EPSILON: Self = $scalar::EPSILON;
+            type Vec3 = $vec3;
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $scalar::abs(self)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                #[cfg(feature = "std")]
+                return $scalar::sqrt(self);
+                #[cfg(not(feature = "std"))]
+                return libm::$libm_sqrt(self);
+            }
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                $scalar::is_finite(self)
+            }
+            #[inline(always)]
+            fn next_up(self) -> Self {
+                $scalar::next_up(self)
+            }
+            #[inline(always)]
+            fn next_down(self) -> Self {
+                $scalar::next_down(self)
+            }
+            #[inline(always)]
+            fn total_cmp(&self, other: &Self) -> core::cmp::Ordering {
+                $scalar::total_cmp(self, other)
+            }
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                value as $scalar
+            }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline(always)]
+            fn to_usize(self) -> usize {
+                self as usize
+            }
+            #[inline(always)]
+            fn to_ordered_bits(self) -> u64 {
+                // Negative numbers have all bits flipped, the others the sign bit alone.
+                let bits = self.to_bits();
+                let mask = ((bits as $signed) >> ($bits::BITS - 1)) as $bits | (1 << ($bits::BITS - 1));
+                u64::from(bits ^ mask)
+            }
+        }
+
+        impl Vector<$scalar> for $vec3 {
+            #[inline(always)]
+            fn from_array(array: [$scalar; 3]) -> Self {
+                <$vec3>::from_array(array)
+            }
+            #[inline(always)]
+            fn dot(self, other: Self) -> $scalar {
+                <$vec3>::dot(self, other)
+            }
+            #[inline(always)]
+            fn cross(self, other: Self) -> Self {
+                <$vec3>::cross(self, other)
+            }
+        }
+    };
+}
+
+scalar!(f32, glam::Vec3, u32, i32, sqrtf);
+scalar!(f64, glam::DVec3, u64, i64, sqrt);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ordered_bits_order_as_total_cmp_does() {
+        let values = [f32::NEG_INFINITY, -1.5, -1e-45, -0.0, 0.0, 1e-45, 2.0, f32::INFINITY];
+        for pair in values.windows(2) {
+            assert!(pair[0].to_ordered_bits() < pair[1].to_ordered_bits(), "{pair:?}");
+        }
+        let doubles = values.map(f64::from);
+        for pair in doubles.windows(2) {
+            assert!(pair[0].to_ordered_bits() < pair[1].to_ordered_bits(), "{pair:?}");
+        }
+    }
+
+    #[test]
+    fn min_and_max_ignore_a_nan_on_the_left() {
+        assert_eq!(min(f32::NAN, 1.0), 1.0);
+        assert_eq!(max(f64::NAN, 1.0), 1.0);
+    }
+}

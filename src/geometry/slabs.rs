@@ -1,0 +1,100 @@
+//! The slab test: where along a ray a box begins and ends.
+
+use super::{Aabb, Ray, Scalar, max, min};
+
+/// A ray prepared for slab tests: the interval of t inside a box is the intersection of its three
+/// slabs (Kay and Kajiya 1986).
+///
+/// For each axis the ray's sign chooses which of the box's two planes is met first, so that
+///
+/// ```text
+/// near = max over axes of (near plane - origin) * inv_near
+/// far  = min over axes of (far plane  - origin) * inv_far
+/// ```
+///
+/// `inv_near` and `inv_far` are 1 / direction, made smaller and larger by 3 epsilon: each side of
+/// the test makes at most four roundings of half an epsilon, so that for planes ahead of the origin
+/// the interval contains the exact one (Ize 2013, who widens the far side alone; both are needed
+/// where a hit is compared with `near`).
+///
+/// On an axis with direction +0 or -0 the inverse is infinite: a plane strictly on one side gives
+/// an infinity of the right sign, and a plane through the origin 0 * infinity = NaN, which the
+/// comparison leaves out: the box's face counts as inside.
+///
+/// Every step is a monotone function of the plane's coordinate (a rounded difference, a rounded
+/// product with a constant of one sign, a maximum that leaves NaN out). Therefore **if box A
+/// contains box B then near(A) <= near(B) and far(A) >= far(B), in floating point, exactly.** The
+/// agreement of tree and naive loop rests on this (see `query::accept`).
+#[derive(Clone, Copy)]
+pub(crate) struct Slabs<S> {
+    pub origin: [S; 3],
+    pub inv_near: [S; 3],
+    pub inv_far: [S; 3],
+    /// The near plane is the box's maximum: the direction's sign bit, so that -0 is like +0.
+    pub negative: [bool; 3],
+    pub t_min: S,
+}
+
+impl<S: Scalar> Slabs<S> {
+    #[inline(always)]
+    pub fn new(ray: &Ray<S>) -> Self {
+        let three = S::EPSILON + S::EPSILON + S::EPSILON;
+        let [dx, dy, dz] = ray.direction;
+        let inv = [S::ONE / dx, S::ONE / dy, S::ONE / dz];
+        Self {
+            origin: ray.origin,
+            inv_near: inv.map(|i| i * (S::ONE - three)),
+            inv_far: inv.map(|i| i * (S::ONE + three)),
+            negative: inv.map(|i| i < S::ZERO),
+            t_min: ray.t_min,
+        }
+    }
+
+    /// Where the ray enters the box, the interval of the ray left aside, if it meets the box at all
+    /// and does not leave it before `t_min`.
+    #[inline(always)]
+    pub fn entry(&self, aabb: &Aabb<S>) -> Option<S> {
+        let plane = |axis: usize, upper: bool| if upper { aabb.max[axis] } else { aabb.min[axis] };
+        let (mut near, mut far) = (S::NEG_INFINITY, S::INFINITY);
+        for axis in 0..3 {
+            let negative = self.negative[axis];
+            near = max((plane(axis, negative) - self.origin[axis]) * self.inv_near[axis], near);
+            far = min((plane(axis, !negative) - self.origin[axis]) * self.inv_far[axis], far);
+        }
+        (near <= far && far >= self.t_min).then_some(near)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entry(ray: Ray<f32>, min: [f32; 3], max: [f32; 3]) -> Option<f32> {
+        Slabs::new(&ray).entry(&Aabb { min, max })
+    }
+
+    #[test]
+    fn enters_at_the_near_plane_within_the_padding() {
+        let t = entry(Ray::new([-3.0, 0.5, 0.5], [1.0, 0.0, 0.0]), [0.0; 3], [1.0; 3]).unwrap();
+        assert!(t <= 3.0 && t > 3.0 - 1e-5, "{t}");
+    }
+
+    #[test]
+    fn a_ray_in_the_plane_of_a_face_meets_the_box_with_either_zero() {
+        for zero in [0.0, -0.0] {
+            for y in [0.0, 1.0] {
+                let ray = Ray::new([-3.0, y, 0.5], [1.0, zero, zero]);
+                assert!(entry(ray, [0.0; 3], [1.0; 3]).is_some(), "{zero:?} {y}");
+            }
+            let ray = Ray::new([-3.0, 1.0001, 0.5], [1.0, zero, zero]);
+            assert!(entry(ray, [0.0; 3], [1.0; 3]).is_none());
+        }
+    }
+
+    #[test]
+    fn a_box_behind_t_min_is_missed_and_one_that_touches_it_is_met() {
+        let ray = Ray::new([0.5f32; 3], [1.0, 0.0, 0.0]);
+        assert!(entry(ray.with_interval(0.5, 9.0), [0.0; 3], [1.0; 3]).is_some());
+        assert!(entry(ray.with_interval(0.6, 9.0), [0.0; 3], [1.0; 3]).is_none());
+    }
+}

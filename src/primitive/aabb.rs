@@ -1,0 +1,62 @@
+//! The box as a primitive: its surface is what rays hit.
+
+use super::{Intersect, Primitive};
+use crate::geometry::{Aabb, Ray, Scalar, max, min};
+
+impl<S: Scalar> Primitive for Aabb<S> {
+    type Scalar = S;
+
+    #[inline(always)]
+    fn aabb(&self) -> Aabb<S> {
+        *self
+    }
+}
+
+impl<S: Scalar> Intersect for Aabb<S> {
+    type Payload = ();
+
+    /// A ray from inside hits the surface on the way out; a ray in the plane of a face hits its edge.
+    #[inline(always)]
+    fn intersect(&self, ray: &Ray<S>) -> Option<(S, ())> {
+        let (mut near, mut far) = (S::NEG_INFINITY, S::INFINITY);
+        for axis in 0..3 {
+            let inv = S::ONE / ray.direction[axis];
+            let (mut first, mut last) = (self.min[axis], self.max[axis]);
+            if inv < S::ZERO {
+                (first, last) = (last, first);
+            }
+            // 0 * infinity, a plane through the origin along it, is NaN and left out.
+            near = max((first - ray.origin[axis]) * inv, near);
+            far = min((last - ray.origin[axis]) * inv, far);
+        }
+        if !(near <= far) {
+            return None;
+        }
+        let inside = |t: S| t >= ray.t_min && t <= ray.t_max;
+        let t = if inside(near) { near } else { far };
+        inside(t).then_some((t, ()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const UNIT: Aabb = Aabb { min: [0.0; 3], max: [1.0; 3] };
+
+    #[test]
+    fn from_outside_the_front_from_inside_the_back() {
+        let ray = Ray::new([-2.0, 0.5, 0.5], [1.0, 0.0, -0.0]);
+        assert_eq!(UNIT.intersect(&ray), Some((2.0, ())));
+        assert_eq!(UNIT.intersect(&ray.with_interval(2.5, 9.0)), Some((3.0, ())));
+        assert_eq!(UNIT.intersect(&ray.with_interval(3.5, 9.0)), None);
+        assert_eq!(UNIT.intersect(&Ray::new([-2.0, 1.5, 0.5], [1.0, 0.0, 0.0])), None);
+    }
+
+    #[test]
+    fn a_ray_in_the_plane_of_a_face_hits() {
+        for y in [0.0, 1.0] {
+            assert_eq!(UNIT.intersect(&Ray::new([2.0, y, 0.5], [-1.0, 0.0, 0.0])), Some((1.0, ())));
+        }
+    }
+}

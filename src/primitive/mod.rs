@@ -1,0 +1,118 @@
+//! What a tree can hold: anything with bounds; and what a ray can hit.
+
+mod aabb;
+mod mesh;
+mod sphere;
+mod triangle;
+
+pub use mesh::{MeshError, MeshTriangle, TriangleMesh};
+pub use sphere::Sphere;
+pub use triangle::{Barycentrics, Triangle};
+
+use crate::geometry::{Aabb, Ray, Scalar};
+use alloc::boxed::Box;
+
+/// Something with a bounding box: all that a tree needs to be built.
+///
+/// ```
+/// use bvhkit::{Aabb, Primitive};
+///
+/// struct Particle { position: [f32; 3], size: f32 }
+///
+/// impl Primitive for Particle {
+///     type Scalar = f32;
+///     fn aabb(&self) -> Aabb {
+///         Aabb::new(self.position.map(|x| x - self.size), self.position.map(|x| x + self.size))
+///     }
+/// }
+/// ```
+pub trait Primitive {
+    /// `f32` or `f64`: the scalar of its coordinates, and of the rays that it meets.
+    type Scalar: Scalar;
+
+    /// The smallest box known to contain the primitive.
+    ///
+    /// Called several times and expected to give the same answer each time. A box with a bound
+    /// that is NaN or infinite, or with a minimum above its maximum, makes the primitive invalid:
+    /// see [`OnInvalid`](crate::OnInvalid).
+    fn aabb(&self) -> Aabb<Self::Scalar>;
+
+    /// The point by which heuristics sort the primitive; the middle of its box unless overridden.
+    /// Must be finite.
+    fn centroid(&self) -> [Self::Scalar; 3] {
+        self.aabb().center()
+    }
+}
+
+/// A primitive that rays can hit.
+///
+/// ```
+/// use bvhkit::{Aabb, Bvh, Intersect, Primitive, Ray};
+///
+/// /// A disc in the plane z = height.
+/// struct Disc { center: [f32; 2], height: f32, radius: f32 }
+///
+/// impl Primitive for Disc {
+///     type Scalar = f32;
+///     fn aabb(&self) -> Aabb {
+///         let ([x, y], z, r) = (self.center, self.height, self.radius);
+///         Aabb::new([x - r, y - r, z], [x + r, y + r, z])
+///     }
+/// }
+///
+/// impl Intersect for Disc {
+///     type Payload = f32; // the distance from the disc's center
+///     fn intersect(&self, ray: &Ray) -> Option<(f32, f32)> {
+///         let t = (self.height - ray.origin[2]) / ray.direction[2];
+///         let [x, y, _] = ray.at(t);
+///         let distance = (x - self.center[0]).hypot(y - self.center[1]);
+///         (distance <= self.radius).then_some((t, distance))
+///     }
+/// }
+///
+/// let discs: Vec<Disc> =
+///     (0..100).map(|i| Disc { center: [i as f32, 0.0], height: 1.0, radius: 0.4 }).collect();
+/// let bvh = Bvh::build(&discs)?;
+/// let hit = bvh.closest_hit(&Ray::new([7.25, 0.0, -1.0], [0.0, 0.0, 1.0])).unwrap();
+/// assert_eq!((hit.index, hit.t, hit.payload), (7, 2.0, 0.25));
+/// # Ok::<(), bvhkit::BuildError>(())
+/// ```
+pub trait Intersect: Primitive {
+    /// What a hit tells beside t: barycentrics, a normal, `()`.
+    type Payload: Copy;
+
+    /// The ray's first hit with this primitive at a t in [`ray.t_min`, `ray.t_max`], and its payload.
+    ///
+    /// Expected to be a pure function: equal primitives and rays give equal answers. A t outside
+    /// the interval, or NaN, is no hit. Where rounding puts t before the ray's entry into the
+    /// primitive's own box, queries report the entry instead, a difference of the rounding error:
+    /// by this rule the tree's answer is the naive loop's, bit for bit.
+    fn intersect(&self, ray: &Ray<Self::Scalar>) -> Option<(Self::Scalar, Self::Payload)>;
+}
+
+macro_rules! forward {
+    ($pointer:ty) => {
+        impl<P: Primitive + ?Sized> Primitive for $pointer {
+            type Scalar = P::Scalar;
+            #[inline(always)]
+            fn aabb(&self) -> Aabb<P::Scalar> {
+                (**self).aabb()
+            }
+            #[inline(always)]
+            fn centroid(&self) -> [P::Scalar; 3] {
+                (**self).centroid()
+            }
+        }
+
+        impl<P: Intersect + ?Sized> Intersect for $pointer {
+            type Payload = P::Payload;
+            #[inline(always)]
+            fn intersect(&self, ray: &Ray<P::Scalar>) -> Option<(P::Scalar, P::Payload)> {
+                (**self).intersect(ray)
+            }
+        }
+    };
+}
+
+forward!(&P);
+forward!(Box<P>);

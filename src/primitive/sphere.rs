@@ -1,0 +1,110 @@
+//! The sphere.
+
+use super::{Intersect, Primitive};
+use crate::geometry::{Aabb, Ray, Scalar, Vector};
+
+/// A sphere's surface: a ray from inside hits it on the way out.
+///
+/// ```
+/// use bvhkit::{Bvh, Ray, Sphere};
+/// let bvh = Bvh::build([Sphere::new([0.0, 0.0, 0.0], 1.0)])?;
+/// let hit = bvh.closest_hit(&Ray::new([0.0, 0.0, -5.0], [0.0, 0.0, 1.0])).unwrap();
+/// assert_eq!(hit.t, 4.0);
+/// # Ok::<(), bvhkit::BuildError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere<S = f32> {
+    /// The center.
+    pub center: [S; 3],
+    /// The radius, in units of length; one below zero makes the sphere invalid.
+    pub radius: S,
+}
+
+impl<S: Scalar> Sphere<S> {
+    /// The sphere around `center`.
+    #[inline(always)]
+    pub fn new(center: impl Into<[S; 3]>, radius: S) -> Self {
+        Self { center: center.into(), radius }
+    }
+}
+
+impl<S: Scalar> Primitive for Sphere<S> {
+    type Scalar = S;
+
+    /// Rounded outward, so that it contains the exact sphere.
+    #[inline(always)]
+    fn aabb(&self) -> Aabb<S> {
+        if self.radius < S::ZERO {
+            return Aabb::EMPTY;
+        }
+        Aabb {
+            min: self.center.map(|x| (x - self.radius).next_down()),
+            max: self.center.map(|x| (x + self.radius).next_up()),
+        }
+    }
+
+    #[inline(always)]
+    fn centroid(&self) -> [S; 3] {
+        self.center
+    }
+}
+
+impl<S: Scalar> Intersect for Sphere<S> {
+    type Payload = ();
+
+    /// The quadratic in the form of Haines, Gunther and Akenine-Moller (Precision Improvements for
+    /// Ray/Sphere Intersection, Ray Tracing Gems 2019): the discriminant from the distance between
+    /// the ray and the center (no cancellation for small, far spheres), the smaller root from the
+    /// larger (none for origins near the surface).
+    #[inline(always)]
+    fn intersect(&self, ray: &Ray<S>) -> Option<(S, ())> {
+        let direction = S::Vec3::from_array(ray.direction);
+        let to_origin = S::Vec3::from_array(ray.origin) - S::Vec3::from_array(self.center);
+        let a = direction.dot(direction);
+        let b = -to_origin.dot(direction);
+        let to_line = to_origin + direction * (b / a);
+        let r2 = self.radius * self.radius;
+        let discriminant = r2 - to_line.dot(to_line);
+        // False for NaN: an overflow is a miss.
+        if !(discriminant >= S::ZERO) {
+            return None;
+        }
+        let root = (a * discriminant).sqrt();
+        let c = to_origin.dot(to_origin) - r2;
+        let q = if b < S::ZERO { b - root } else { b + root };
+        let (t0, t1) = (c / q, q / a);
+        let (near, far) = if t0 <= t1 { (t0, t1) } else { (t1, t0) };
+        let inside = |t: S| t >= ray.t_min && t <= ray.t_max;
+        let t = if inside(near) { near } else { far };
+        inside(t).then_some((t, ()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn from_outside_the_near_root_from_inside_the_far_one() {
+        let sphere = Sphere::new([1.0f64, 2.0, 3.0], 2.0);
+        let ray = Ray::new([1.0, 2.0, -7.0], [0.0, 0.0, 2.0]);
+        assert_eq!(sphere.intersect(&ray), Some((4.0, ())));
+        assert_eq!(sphere.intersect(&ray.with_interval(4.5, 9.0)), Some((6.0, ())));
+        assert_eq!(sphere.intersect(&ray.with_interval(4.5, 5.5)), None);
+        assert_eq!(sphere.intersect(&Ray::new([1.0, 2.0, 3.0], [1.0, 0.0, 0.0])), Some((2.0, ())));
+        assert_eq!(sphere.intersect(&Ray::new([1.0, 4.5, -7.0], [0.0, 0.0, 1.0])), None);
+    }
+
+    #[test]
+    fn a_small_sphere_far_away_is_found_at_its_surface() {
+        let sphere = Sphere::new([0.0f32, 0.0, 1e6], 1.0);
+        let (t, ()) = sphere.intersect(&Ray::new([0.5, 0.0, 0.0], [0.0, 0.0, 1.0])).unwrap();
+        assert!((t - 1e6).abs() <= 1.0, "{t}");
+    }
+
+    #[test]
+    fn a_negative_radius_is_an_invalid_box() {
+        assert!(!Sphere::new([0.0f32; 3], -1.0).aabb().is_valid());
+        assert!(Sphere::new([0.0f32; 3], 0.0).aabb().is_valid());
+    }
+}

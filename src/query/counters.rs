@@ -1,0 +1,91 @@
+//! Counting what queries do: free when nobody counts.
+
+use core::ops::AddAssign;
+
+/// Is told of each step of a query. A type parameter: `()` records nothing and costs nothing.
+pub trait Recorder {
+    /// A valid ray sets out.
+    #[inline(always)]
+    fn ray(&mut self) {}
+    /// An inner node is visited: the boxes of its two children are tested.
+    #[inline(always)]
+    fn node(&mut self) {}
+    /// A leaf is visited.
+    #[inline(always)]
+    fn leaf(&mut self) {}
+    /// A primitive is tested.
+    #[inline(always)]
+    fn primitive(&mut self) {}
+}
+
+impl Recorder for () {}
+
+impl<R: Recorder + ?Sized> Recorder for &mut R {
+    #[inline(always)]
+    fn ray(&mut self) {
+        (**self).ray();
+    }
+    #[inline(always)]
+    fn node(&mut self) {
+        (**self).node();
+    }
+    #[inline(always)]
+    fn leaf(&mut self) {
+        (**self).leaf();
+    }
+    #[inline(always)]
+    fn primitive(&mut self) {
+        (**self).primitive();
+    }
+}
+
+/// Counts of rays and of what they visited.
+///
+/// ```
+/// use bvhkit::{Bvh, Counters, Ray, Sphere};
+/// let bvh = Bvh::build((0..1000).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)))?;
+/// let mut counters = Counters::default();
+/// bvh.closest_hit_with(&Ray::new([70.0, -2.0, 0.0], [0.0, 1.0, 0.0]), &mut counters);
+/// assert_eq!(counters.rays, 1);
+/// assert!(counters.primitives < 10);
+/// # Ok::<(), bvhkit::BuildError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Valid rays.
+    pub rays: u64,
+    /// Inner nodes visited.
+    pub nodes: u64,
+    /// Leaves visited.
+    pub leaves: u64,
+    /// Primitives tested.
+    pub primitives: u64,
+}
+
+impl Recorder for Counters {
+    #[inline(always)]
+    fn ray(&mut self) {
+        self.rays += 1;
+    }
+    #[inline(always)]
+    fn node(&mut self) {
+        self.nodes += 1;
+    }
+    #[inline(always)]
+    fn leaf(&mut self) {
+        self.leaves += 1;
+    }
+    #[inline(always)]
+    fn primitive(&mut self) {
+        self.primitives += 1;
+    }
+}
+
+impl AddAssign for Counters {
+    fn add_assign(&mut self, other: Self) {
+        self.rays += other.rays;
+        self.nodes += other.nodes;
+        self.leaves += other.leaves;
+        self.primitives += other.primitives;
+    }
+}

@@ -1,0 +1,51 @@
+//! A stack of fixed size whose unused part is never written.
+
+use core::mem::MaybeUninit;
+
+/// At most `N` values, on the thread's stack. A query's stack is not cleared first: at 1 KiB that
+/// would take as long as several steps of the traversal.
+pub(super) struct Stack<T, const N: usize> {
+    values: [MaybeUninit<T>; N],
+    /// `values[..len]` are initialised; only `push` and `pop` change it.
+    len: usize,
+}
+
+impl<T: Copy, const N: usize> Stack<T, N> {
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self { values: [const { MaybeUninit::uninit() }; N], len: 0 }
+    }
+
+    /// # Panics
+    /// If `N` values are in it already.
+    #[inline(always)]
+    pub fn push(&mut self, value: T) {
+        self.values[self.len].write(value);
+        self.len += 1;
+    }
+
+    #[inline(always)]
+    pub fn pop(&mut self) -> Option<T> {
+        self.len = self.len.checked_sub(1)?;
+        let value = self.values.get(self.len)?;
+        // SAFETY: `values[..len]` were initialised by `push` before `len` was lowered just now.
+        Some(unsafe { value.assume_init() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn last_in_first_out() {
+        let mut stack = Stack::<u32, 3>::new();
+        assert_eq!(stack.pop(), None);
+        for value in [1, 2, 3] {
+            stack.push(value);
+        }
+        assert_eq!([stack.pop(), stack.pop()], [Some(3), Some(2)]);
+        stack.push(4);
+        assert_eq!([stack.pop(), stack.pop(), stack.pop()], [Some(4), Some(1), None]);
+    }
+}

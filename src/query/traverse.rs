@@ -1,0 +1,104 @@
+//! The traversal loop of the binary tree.
+//!
+//! ```text
+//! step: an inner node tests both children's boxes:
+//!         both met   the nearer is next, the farther goes on the stack with its entry distance
+//!         one met    it is next
+//!         none       pop
+//!       a leaf is visited, then pop
+//! pop:  entries beyond the visitor's limit, which may have shrunk since, are dropped
+//! ```
+
+use super::counters::Recorder;
+use super::stack::Stack;
+use crate::geometry::{Scalar, Slabs, max, min};
+use crate::tree::{Child, MAX_DEPTH, Node, Tree};
+use core::ops::{ControlFlow, Range};
+
+/// A query, as the loop sees it.
+pub(super) trait Visitor<S> {
+    /// What begins beyond this t is of no interest any more.
+    fn limit(&self) -> S;
+    /// A leaf whose box the ray enters before the limit.
+    fn leaf(&mut self, slots: Range<usize>, recorder: &mut impl Recorder) -> ControlFlow<()>;
+}
+
+#[derive(Clone, Copy)]
+struct Pending<S> {
+    entry: S,
+    child: Child,
+}
+
+/// Shows `visitor` the leaves whose boxes the ray meets, nearer children first, until it breaks.
+#[inline(always)]
+pub(super) fn traverse<S: Scalar>(
+    tree: &Tree<S>,
+    slabs: &Slabs<S>,
+    visitor: &mut impl Visitor<S>,
+    recorder: &mut impl Recorder,
+) {
+    let mut child = match tree.root() {
+        Some(root) if slabs.entry(&tree.aabb).is_some_and(|entry| entry <= visitor.limit()) => root,
+        _ => return,
+    };
+    // One entry for each level at the most.
+    let mut stack = Stack::<Pending<S>, MAX_DEPTH>::new();
+    loop {
+        if child.is_leaf() {
+            recorder.leaf();
+            if visitor.leaf(child.slots(), recorder).is_break() {
+                return;
+            }
+        } else {
+            recorder.node();
+            let node = &tree.nodes[child.first as usize];
+            let (entry, met) = enter_children(node, slabs, visitor.limit());
+            let [left, right] = node.children;
+            match met {
+                [true, true] => {
+                    let swap = entry[1] < entry[0];
+                    let (near, far) = if swap { (right, left) } else { (left, right) };
+                    stack.push(Pending { entry: max(entry[0], entry[1]), child: far });
+                    child = near;
+                    continue;
+                }
+                [true, false] => {
+                    child = left;
+                    continue;
+                }
+                [false, true] => {
+                    child = right;
+                    continue;
+                }
+                [false, false] => {}
+            }
+        }
+        loop {
+            match stack.pop() {
+                Some(pending) if pending.entry <= visitor.limit() => {
+                    child = pending.child;
+                    break;
+                }
+                Some(_) => {}
+                None => return,
+            }
+        }
+    }
+}
+
+/// Where the ray enters the children's boxes, from t_min on, and which of them it meets up to `limit`.
+#[inline(always)]
+pub(super) fn enter_children<S: Scalar>(node: &Node<S>, slabs: &Slabs<S>, limit: S) -> ([S; 2], [bool; 2]) {
+    let mut near = [slabs.t_min; 2];
+    let mut far = [limit; 2];
+    for axis in 0..3 {
+        let negative = usize::from(slabs.negative[axis]);
+        let near_planes = node.planes[axis][negative];
+        let far_planes = node.planes[axis][1 - negative];
+        for side in 0..2 {
+            near[side] = max((near_planes[side] - slabs.origin[axis]) * slabs.inv_near[axis], near[side]);
+            far[side] = min((far_planes[side] - slabs.origin[axis]) * slabs.inv_far[axis], far[side]);
+        }
+    }
+    (near, [near[0] <= far[0], near[1] <= far[1]])
+}

@@ -1,0 +1,85 @@
+//! The naive answers: every primitive is asked, none is passed over.
+//!
+//! What a tree answers is tested against these, this crate's and, if you like, your own: the
+//! functions take any slice of primitives. They use the same acceptance of hits as the queries
+//! of [`Bvh`](crate::Bvh) (see [`Intersect::intersect`]), and answer by the smallest (t, index), so
+//! a tree of this crate gives the same t, bit for bit, and the same index.
+//!
+//! A primitive with an invalid box (a bound that is NaN or infinite, or a minimum above its
+//! maximum) is not hit, as in a tree that was told to skip such.
+//!
+//! ```
+//! use bvhkit::{Bvh, Ray, Sphere, reference};
+//! let spheres: Vec<Sphere> = (0..100).map(|i| Sphere::new([0.0, 0.0, i as f32], 0.4)).collect();
+//! let bvh = Bvh::build(&spheres)?;
+//! let ray = Ray::new([0.1, 0.2, -3.0], [0.0, 0.0, 1.0]);
+//! assert_eq!(bvh.closest_hit(&ray), reference::closest_hit(&spheres, &ray));
+//! assert_eq!(bvh.hits(&ray).collect::<Vec<_>>(), reference::hits(&spheres, &ray));
+//! # Ok::<(), bvhkit::BuildError>(())
+//! ```
+
+use crate::geometry::{Ray, Slabs};
+use crate::primitive::Intersect;
+use crate::query::{Hit, HitOf, Recorder, accept, precedes};
+use alloc::vec::Vec;
+
+/// The hit with the smallest t in the ray's interval; of equal ones, that with the lowest index.
+pub fn closest_hit<P: Intersect>(primitives: &[P], ray: &Ray<P::Scalar>) -> Option<HitOf<P>> {
+    closest_hit_with(primitives, ray, &mut ())
+}
+
+/// As [`closest_hit`], telling `recorder` of each step.
+pub fn closest_hit_with<P: Intersect>(
+    primitives: &[P],
+    ray: &Ray<P::Scalar>,
+    recorder: &mut impl Recorder,
+) -> Option<HitOf<P>> {
+    let mut best: Option<HitOf<P>> = None;
+    for hit in all(primitives, ray, recorder) {
+        if best.is_none_or(|best| precedes(hit.t, hit.index, best.t, best.index)) {
+            best = Some(hit);
+        }
+    }
+    best
+}
+
+/// Whether anything is hit in the ray's interval; stops at the first that is.
+pub fn any_hit<P: Intersect>(primitives: &[P], ray: &Ray<P::Scalar>) -> bool {
+    any_hit_with(primitives, ray, &mut ())
+}
+
+/// As [`any_hit`], telling `recorder` of each step.
+pub fn any_hit_with<P: Intersect>(
+    primitives: &[P],
+    ray: &Ray<P::Scalar>,
+    recorder: &mut impl Recorder,
+) -> bool {
+    all(primitives, ray, recorder).next().is_some()
+}
+
+/// All hits in the ray's interval, by increasing t, equal ones by index.
+pub fn hits<P: Intersect>(primitives: &[P], ray: &Ray<P::Scalar>) -> Vec<HitOf<P>> {
+    let mut hits: Vec<_> = all(primitives, ray, &mut ()).collect();
+    // By index already, and the sort is stable; no t is NaN.
+    hits.sort_by(|a, b| a.t.partial_cmp(&b.t).unwrap_or(core::cmp::Ordering::Equal));
+    hits
+}
+
+/// The hits in the order of the input.
+fn all<'a, P: Intersect>(
+    primitives: &'a [P],
+    ray: &'a Ray<P::Scalar>,
+    recorder: &'a mut impl Recorder,
+) -> impl Iterator<Item = HitOf<P>> + 'a {
+    let slabs = Slabs::new(ray);
+    let valid = ray.is_valid();
+    if valid {
+        recorder.ray();
+    }
+    let asked = if valid { primitives } else { &[] };
+    asked.iter().enumerate().filter_map(move |(index, primitive)| {
+        recorder.primitive();
+        let (t, payload) = accept(primitive, ray, &slabs, ray.t_max)?;
+        primitive.aabb().is_valid().then_some(Hit { t, index, payload })
+    })
+}

@@ -1,0 +1,106 @@
+//! The binary tree: nodes and indices, never primitives.
+
+mod check;
+mod report;
+
+pub use check::InvariantError;
+pub use report::{LeafSizes, TreeReport};
+
+use crate::geometry::{Aabb, Scalar};
+use alloc::vec::Vec;
+use core::ops::Range;
+
+/// No leaf is deeper than this below the root, which has depth 0, whatever the heuristic and the
+/// data: stacks of this size never overflow.
+pub const MAX_DEPTH: usize = 64;
+
+/// An inner node: the boxes of its two children side by side, and where the children are.
+///
+/// One cache line for f32. `planes[axis][0]` holds the two minima, `planes[axis][1]` the two maxima,
+/// so that the slab test chooses the pair of near planes by the ray's sign, as an address.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub(crate) struct Node<S> {
+    pub planes: [[[S; 2]; 2]; 3],
+    pub children: [Child; 2],
+}
+
+const _: () = assert!(size_of::<Node<f32>>() == 64 && size_of::<Node<f64>>() == 128);
+
+/// Where a child is: a leaf with `count` primitives from slot `first` on, or, if `count` is 0, the
+/// inner node number `first`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Child {
+    pub first: u32,
+    pub count: u32,
+}
+
+impl Child {
+    pub fn inner(node: usize) -> Self {
+        Self { first: node as u32, count: 0 }
+    }
+
+    pub fn leaf(slots: Range<usize>) -> Self {
+        Self { first: slots.start as u32, count: slots.len() as u32 }
+    }
+
+    #[inline(always)]
+    pub fn is_leaf(self) -> bool {
+        self.count != 0
+    }
+
+    #[inline(always)]
+    pub fn slots(self) -> Range<usize> {
+        self.first as usize..self.first as usize + self.count as usize
+    }
+}
+
+impl<S: Scalar> Node<S> {
+    pub fn aabb(&self, side: usize) -> Aabb<S> {
+        Aabb { min: self.planes.map(|axis| axis[0][side]), max: self.planes.map(|axis| axis[1][side]) }
+    }
+
+    pub fn new(boxes: [Aabb<S>; 2]) -> Self {
+        let [left, right] = boxes;
+        let pair = |axis: usize| [[left.min[axis], right.min[axis]], [left.max[axis], right.max[axis]]];
+        Self { planes: [pair(0), pair(1), pair(2)], children: [Child::default(); 2] }
+    }
+}
+
+/// A binary bounding volume hierarchy over primitives known by their index alone.
+///
+/// Two trees are equal if they have the same nodes in the same places: what a build promises for
+/// any number of threads. A [`Bvh`](crate::Bvh) owns one; see [`Bvh::tree`](crate::Bvh::tree).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tree<S = f32> {
+    pub(crate) nodes: Vec<Node<S>>,
+    pub(crate) root: Child,
+    pub(crate) aabb: Aabb<S>,
+    /// The input's index of each slot's primitive. Leaves are ranges of slots; behind the last leaf
+    /// come the primitives that were skipped.
+    pub(crate) indices: Vec<u32>,
+    /// How many slots are in leaves.
+    pub(crate) len: usize,
+}
+
+impl<S: Scalar> Tree<S> {
+    /// The number of primitives in its leaves.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// No primitives in it.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The box around everything; [`Aabb::EMPTY`] if there is nothing.
+    pub fn aabb(&self) -> Aabb<S> {
+        self.aabb
+    }
+
+    /// The root, if the tree is not empty.
+    pub(crate) fn root(&self) -> Option<Child> {
+        (!self.is_empty()).then_some(self.root)
+    }
+}
