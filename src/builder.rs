@@ -1,6 +1,6 @@
 //! The options of a build, and what may be wrong with its input.
 
-use crate::build::heuristic::{BinnedSah, BuildNode, Heuristic, Split, SweepSah};
+use crate::build::heuristic::{BinnedSah, BuildNode, Heuristic, Split};
 use crate::build::{PrimRef, ThreadPoolError, build_tree, in_pool};
 use crate::bvh::Bvh;
 use crate::geometry::Scalar;
@@ -11,16 +11,20 @@ use core::marker::PhantomData;
 
 /// How much time a build may take for how quick a tree.
 ///
-/// A preset chooses a heuristic; the README has the figures. To choose for yourself:
-/// [`Builder::heuristic`].
+/// A preset chooses a heuristic: [`BinnedSah`] with more or fewer bins. The README has the figures.
+/// To choose for yourself: [`Builder::heuristic`].
+///
+/// [`SweepSah`](crate::heuristic::SweepSah), which tries every split, is none of them: on six scenes
+/// its trees are 1 to 7 % better than those of 32 bins on four and 2 to 45 % worse on two, where
+/// greedy exactness misleads, and take 2 to 3 times as long to build.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Quality {
-    /// The quickest build that is still a surface area heuristic: 8 bins.
+    /// 8 bins: the quickest build of those that weigh surface areas.
     Fast,
     /// 16 bins.
     #[default]
     Balanced,
-    /// Every split tried.
+    /// 32 bins.
     High,
 }
 
@@ -29,7 +33,7 @@ impl<S: Scalar> Heuristic<S> for Quality {
         match self {
             Self::Fast => BinnedSah::new(8).split(node),
             Self::Balanced => BinnedSah::new(16).split(node),
-            Self::High => SweepSah::default().split(node),
+            Self::High => BinnedSah::new(32).split(node),
         }
     }
 }

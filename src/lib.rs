@@ -13,6 +13,7 @@ mod geometry;
 mod primitive;
 mod query;
 pub mod reference;
+mod simd;
 mod tree;
 
 pub use build::heuristic;

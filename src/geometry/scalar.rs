@@ -40,6 +40,9 @@ pub trait Scalar:
     /// glam's vector of this scalar, in which the arithmetic of primitives is done.
     #[doc(hidden)]
     type Vec3: Vector<Self>;
+    /// Four of them side by side, for the slab test of two boxes.
+    #[doc(hidden)]
+    type Lanes4: crate::simd::Lanes4<Self>;
 
     /// The absolute value.
     fn abs(self) -> Self;
@@ -89,7 +92,7 @@ mod sealed {
 }
 
 macro_rules! scalar {
-    ($scalar:ident, $vec3:ty, $bits:ident, $signed:ident, $libm_sqrt:ident) => {
+    ($scalar:ident, $vec3:ty, $lanes4:ty, $bits:ident, $signed:ident, $libm_sqrt:ident) => {
         impl Scalar for $scalar {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -98,6 +101,7 @@ macro_rules! scalar {
             const NEG_INFINITY: Self = $scalar::NEG_INFINITY;
             const EPSILON: Self = $scalar::EPSILON;
             type Vec3 = $vec3;
+            type Lanes4 = $lanes4;
 
             #[inline(always)]
             fn abs(self) -> Self {
@@ -164,8 +168,8 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, glam::Vec3, u32, i32, sqrtf);
-scalar!(f64, glam::DVec3, u64, i64, sqrt);
+scalar!(f32, glam::Vec3, glam::Vec4, u32, i32, sqrtf);
+scalar!(f64, glam::DVec3, [f64; 4], u64, i64, sqrt);
 
 #[cfg(test)]
 mod tests {

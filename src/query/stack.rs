@@ -4,16 +4,25 @@ use core::mem::MaybeUninit;
 
 /// At most `N` values, on the thread's stack. A query's stack is not cleared first: at 1 KiB that
 /// would take as long as several steps of the traversal.
-pub(super) struct Stack<T, const N: usize> {
-    values: [MaybeUninit<T>; N],
+///
+/// The memory is borrowed: a length beside the values in one local would be kept in memory too,
+/// and each push would wait for the last one's store.
+pub(super) struct Stack<'m, T, const N: usize> {
+    values: &'m mut [MaybeUninit<T>; N],
     /// `values[..len]` are initialised; only `push` and `pop` change it.
     len: usize,
 }
 
-impl<T: Copy, const N: usize> Stack<T, N> {
+impl<'m, T: Copy, const N: usize> Stack<'m, T, N> {
+    /// What [`new`](Self::new) borrows.
     #[inline(always)]
-    pub fn new() -> Self {
-        Self { values: [const { MaybeUninit::uninit() }; N], len: 0 }
+    pub fn memory() -> [MaybeUninit<T>; N] {
+        [const { MaybeUninit::uninit() }; N]
+    }
+
+    #[inline(always)]
+    pub fn new(memory: &'m mut [MaybeUninit<T>; N]) -> Self {
+        Self { values: memory, len: 0 }
     }
 
     /// # Panics
@@ -39,7 +48,8 @@ mod tests {
 
     #[test]
     fn last_in_first_out() {
-        let mut stack = Stack::<u32, 3>::new();
+        let mut memory = Stack::memory();
+        let mut stack = Stack::<u32, 3>::new(&mut memory);
         assert_eq!(stack.pop(), None);
         for value in [1, 2, 3] {
             stack.push(value);

@@ -11,7 +11,8 @@
 
 use super::counters::Recorder;
 use super::stack::Stack;
-use crate::geometry::{Scalar, Slabs, max, min};
+use crate::geometry::{Scalar, Slabs, max};
+use crate::simd::Lanes4;
 use crate::tree::{Child, MAX_DEPTH, Node, Tree};
 use core::ops::{ControlFlow, Range};
 
@@ -42,7 +43,8 @@ pub(super) fn traverse<S: Scalar>(
         _ => return,
     };
     // One entry for each level at the most.
-    let mut stack = Stack::<Pending<S>, MAX_DEPTH>::new();
+    let mut memory = Stack::memory();
+    let mut stack = Stack::<Pending<S>, MAX_DEPTH>::new(&mut memory);
     loop {
         if child.is_leaf() {
             recorder.leaf();
@@ -89,16 +91,14 @@ pub(super) fn traverse<S: Scalar>(
 /// Where the ray enters the children's boxes, from t_min on, and which of them it meets up to `limit`.
 #[inline(always)]
 pub(super) fn enter_children<S: Scalar>(node: &Node<S>, slabs: &Slabs<S>, limit: S) -> ([S; 2], [bool; 2]) {
-    let mut near = [slabs.t_min; 2];
-    let mut far = [limit; 2];
+    // One maximum serves both ends: the far side is computed with its sign turned.
+    let mut bounds = S::Lanes4::of_halves(slabs.t_min, -limit);
     for axis in 0..3 {
         let negative = usize::from(slabs.negative[axis]);
-        let near_planes = node.planes[axis][negative];
-        let far_planes = node.planes[axis][1 - negative];
-        for side in 0..2 {
-            near[side] = max((near_planes[side] - slabs.origin[axis]) * slabs.inv_near[axis], near[side]);
-            far[side] = min((far_planes[side] - slabs.origin[axis]) * slabs.inv_far[axis], far[side]);
-        }
+        let planes = S::Lanes4::of_pairs(&node.planes[axis][negative], &node.planes[axis][1 - negative]);
+        let inv = S::Lanes4::of_halves(slabs.inv_near[axis], -slabs.inv_far[axis]);
+        bounds = planes.sub(S::Lanes4::splat(slabs.origin[axis])).mul(inv).max(bounds);
     }
+    let [near, far] = bounds.to_pairs_negating_second();
     (near, [near[0] <= far[0], near[1] <= far[1]])
 }

@@ -1,6 +1,6 @@
 //! The surface area heuristic on a few planes.
 
-use super::{BuildNode, Heuristic, SahCost, Split};
+use super::{BuildNode, Heuristic, SahCost, Split, SweepSah};
 use crate::build::parallel;
 use crate::build::reference::PrimRef;
 use crate::geometry::{Aabb, Axis, Scalar};
@@ -11,8 +11,16 @@ const CHUNK: usize = 1 << 15;
 /// The cheapest of `bins - 1` equally spaced planes on each axis, by the surface area heuristic
 /// (Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007).
 ///
-/// Centroids are counted into bins over the box around them, each bin with the box around its
-/// primitives; a sweep over the bins then finds the best plane between two.
+/// Centroids are counted into bins over the node's box, each bin with the box around its
+/// primitives; a sweep over the bins then finds the best plane between two. If all centroids fall
+/// into one bin, bins over the box around the centroids are tried instead. Nodes of a few
+/// primitives are swept as by [`SweepSah`]: exact, and quicker than clearing bins.
+///
+/// Wald's bins span the box around the centroids in the first place. Spanning the node's box puts
+/// planes where the scene has its walls: with 16 bins a diffuse ray visits 50 nodes of Crytek's
+/// Sponza instead of 68, a primary ray 41 instead of 56; other scenes change by 3 % either way.
+/// Choosing by axis, the centroids' box wherever it is less than an eighth to a half of the node's,
+/// loses all of the gain (71 nodes).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BinnedSah {
     /// Bins on each axis, 2 to [`MAX_BINS`](Self::MAX_BINS); values outside are clamped.
@@ -40,10 +48,26 @@ impl Default for BinnedSah {
 
 impl<S: Scalar> Heuristic<S> for BinnedSah {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
+        if node.references.len() <= SweepSah::SMALL {
+            return SweepSah { cost: self.cost }.split(node);
+        }
+        // Bins are cleared for every node: no more of them than are used.
+        match self.bins {
+            ..=8 => self.split_with::<S, 8>(node),
+            9..=16 => self.split_with::<S, 16>(node),
+            17..=32 => self.split_with::<S, 32>(node),
+            _ => self.split_with::<S, { Self::MAX_BINS }>(node),
+        }
+    }
+}
+
+impl BinnedSah {
+    fn split_with<S: Scalar, const N: usize>(&self, node: &BuildNode<'_, S>) -> Split<S> {
         let n = node.references.len();
-        let bins = Bins::of(node, self.bins.clamp(2, Self::MAX_BINS));
+        let count = self.bins.clamp(2, N);
         let scale = node.aabb.area_scale();
-        match bins.best_plane(scale) {
+        let plane = |span| Bins::<S, N>::of(node.references, span, count).best_plane(scale);
+        match plane(&node.aabb).or_else(|| plane(&node.centroids)) {
             Some(best)
                 if n > node.max_leaf_size
                     || !self.cost.prefers_leaf(n, node.aabb.scaled_half_area(scale), best.weighted_area) =>
@@ -77,8 +101,8 @@ impl<S: Scalar> Bin<S> {
 
 /// The bins of all three axes.
 #[derive(Clone)]
-struct Bins<S> {
-    bins: [[Bin<S>; BinnedSah::MAX_BINS]; 3],
+struct Bins<S, const N: usize> {
+    bins: [[Bin<S>; N]; 3],
     count: usize,
     origin: [S; 3],
     /// Bins per unit of length; 0 on an axis without extent.
@@ -90,26 +114,25 @@ struct Best<S> {
     split: Split<S>,
 }
 
-impl<S: Scalar> Bins<S> {
-    fn of(node: &BuildNode<'_, S>, count: usize) -> Self {
-        let scale = node.centroids.extent().map(|extent| {
+impl<S: Scalar, const N: usize> Bins<S, N> {
+    fn of(references: &[PrimRef<S>], span: &Aabb<S>, count: usize) -> Self {
+        let scale = span.extent().map(|extent| {
             let scale = S::from_f64(count as f64) / extent;
             if scale.is_finite() { scale } else { S::ZERO }
         });
-        let empty = Self { bins: [[Bin::EMPTY; _]; 3], count, origin: node.centroids.min, scale };
-        if node.references.len() <= CHUNK {
-            let mut bins = empty;
-            bins.fill(node.references);
-            return bins;
+        let mut bins = Self { bins: [[Bin::EMPTY; N]; 3], count, origin: span.min, scale };
+        if references.len() <= CHUNK {
+            bins.fill(references);
+        } else {
+            // Minima, maxima and counts: the order of merging leaves no trace.
+            let parts = parallel::map(references.chunks(CHUNK).collect(), |chunk| {
+                let mut part = bins.clone();
+                part.fill(chunk);
+                part
+            });
+            parts.iter().for_each(|part| bins.merge(part));
         }
-        // Minima, maxima and counts: the order of merging leaves no trace.
-        let chunks = node.references.chunks(CHUNK).collect();
-        let parts = parallel::map(chunks, |chunk| {
-            let mut bins = empty.clone();
-            bins.fill(chunk);
-            bins
-        });
-        parts.into_iter().fold(empty, Self::merge)
+        bins
     }
 
     fn fill(&mut self, references: &[PrimRef<S>]) {
@@ -124,13 +147,12 @@ impl<S: Scalar> Bins<S> {
         }
     }
 
-    fn merge(mut self, other: Self) -> Self {
-        for axis in 0..3 {
-            for (bin, other) in self.bins[axis][..self.count].iter_mut().zip(&other.bins[axis]) {
+    fn merge(&mut self, other: &Self) {
+        for (bins, others) in self.bins.iter_mut().zip(&other.bins) {
+            for (bin, other) in bins.iter_mut().zip(others) {
                 *bin = bin.merge(*other);
             }
         }
-        self
     }
 
     /// The plane with the smallest sum of area times count; none if all centroids are in one bin.
@@ -139,7 +161,7 @@ impl<S: Scalar> Bins<S> {
         for axis in Axis::ALL {
             let bins = &self.bins[axis.index()][..self.count];
             // From the right, the cost of everything from a bin on; then from the left.
-            let mut right_cost = [S::ZERO; BinnedSah::MAX_BINS];
+            let mut right_cost = [S::ZERO; N];
             let mut right = Bin::EMPTY;
             for i in (1..bins.len()).rev() {
                 right = right.merge(bins[i]);
@@ -232,16 +254,9 @@ mod tests {
     fn chunks_change_nothing() {
         let positions: Vec<f32> = (0..3 * CHUNK).map(|i| (i * 7919 % 10_007) as f32).collect();
         let references = unit_boxes(&positions);
-        let extent = Extent::of(&references);
-        let node = BuildNode {
-            aabb: extent.aabb,
-            centroids: extent.centroids,
-            references: &references,
-            depth: 0,
-            max_leaf_size: 1,
-        };
-        let chunked = Bins::of(&node, 16);
-        let mut whole = Bins::of(&BuildNode { references: &references[..1], ..node }, 16);
+        let span = Extent::of(&references).aabb;
+        let chunked = Bins::<f32, 16>::of(&references, &span, 16);
+        let mut whole = Bins::<f32, 16>::of(&references[..1], &span, 16);
         whole.fill(&references[1..]);
         for axis in 0..3 {
             for i in 0..16 {

@@ -22,16 +22,25 @@ pub struct SweepSah {
     pub cost: SahCost,
 }
 
+impl SweepSah {
+    /// At most so many references are swept without asking for memory.
+    pub(super) const SMALL: usize = 8;
+}
+
 impl<S: Scalar> Heuristic<S> for SweepSah {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
         let n = node.references.len();
         let scale = node.aabb.area_scale();
-        let sweeps = if n < PARALLEL {
-            let mut sweep = Sweep::new(n);
-            Axis::ALL.map(|axis| sweep.best(node.references, axis, scale))
+        let best = |axis, memory: &mut [Place<S>]| best_count(node.references, axis, scale, memory);
+        let sweeps = if n <= Self::SMALL {
+            let mut memory = [Place::default(); Self::SMALL];
+            Axis::ALL.map(|axis| best(axis, &mut memory[..n]))
+        } else if n < PARALLEL {
+            let mut memory = vec![Place::default(); n];
+            Axis::ALL.map(|axis| best(axis, &mut memory))
         } else {
-            let best = |axis| Sweep::new(n).best(node.references, axis, scale);
-            let sweeps = parallel::map(Vec::from(Axis::ALL), best);
+            let sweeps =
+                parallel::map(Vec::from(Axis::ALL), |axis| best(axis, &mut vec![Place::default(); n]));
             [sweeps[0], sweeps[1], sweeps[2]]
         };
         // The first of equals.
@@ -56,46 +65,48 @@ struct Best<S> {
     weighted_area: S,
 }
 
-/// The memory of a sweep, shared between axes.
-struct Sweep<S> {
-    /// The centroid as ordered bits, the primitive's index, the position in the node: sorted as
-    /// [`Split::Count`] counts.
-    order: Vec<(u64, u32, u32)>,
-    /// The cost of everything from a place on.
-    right_cost: Vec<S>,
+/// A place in the order of the centroids along an axis.
+#[derive(Clone, Copy, Default)]
+struct Place<S> {
+    /// The centroid as ordered bits, then the primitive's index: sorted as [`Split::Count`] counts.
+    key: (u64, u32),
+    /// The reference's position in the node.
+    position: u32,
+    /// The cost of everything from this place on.
+    right_cost: S,
 }
 
-impl<S: Scalar> Sweep<S> {
-    fn new(n: usize) -> Self {
-        Self { order: Vec::with_capacity(n), right_cost: vec![S::ZERO; n] }
+/// The cheapest split by number along an axis. `memory` has a place for each reference.
+fn best_count<S: Scalar>(
+    references: &[PrimRef<S>],
+    axis: Axis,
+    scale: S,
+    memory: &mut [Place<S>],
+) -> Best<S> {
+    let n = references.len();
+    for ((place, reference), position) in memory.iter_mut().zip(references).zip(0..) {
+        place.key = (reference.centroid[axis.index()].to_ordered_bits(), reference.index);
+        place.position = position;
     }
+    memory.sort_unstable_by_key(|place| place.key);
+    let cost = |aabb: &Aabb<S>, count: usize| aabb.scaled_half_area(scale) * S::from_f64(count as f64);
+    let aabb_of = |place: &Place<S>| references[place.position as usize].aabb;
 
-    fn best(&mut self, references: &[PrimRef<S>], axis: Axis, scale: S) -> Best<S> {
-        let n = references.len();
-        self.order.clear();
-        self.order.extend(references.iter().zip(0..).map(|(reference, position)| {
-            (reference.centroid[axis.index()].to_ordered_bits(), reference.index, position)
-        }));
-        self.order.sort_unstable();
-        let cost = |aabb: &Aabb<S>, count: usize| aabb.scaled_half_area(scale) * S::from_f64(count as f64);
-        let aabb_at = |place: usize| references[self.order[place].2 as usize].aabb;
-
-        let mut right = Aabb::EMPTY;
-        for i in (1..n).rev() {
-            right = right.union(aabb_at(i));
-            self.right_cost[i] = cost(&right, n - i);
-        }
-        let mut left = Aabb::EMPTY;
-        let mut best = Best { left: n / 2, weighted_area: S::INFINITY };
-        for i in 1..n {
-            left = left.union(aabb_at(i - 1));
-            let weighted_area = cost(&left, i) + self.right_cost[i];
-            if weighted_area < best.weighted_area {
-                best = Best { left: i, weighted_area };
-            }
-        }
-        best
+    let mut right = Aabb::EMPTY;
+    for (place, count) in memory[1..].iter_mut().rev().zip(1..) {
+        right = right.union(aabb_of(place));
+        place.right_cost = cost(&right, count);
     }
+    let mut left = Aabb::EMPTY;
+    let mut best = Best { left: n / 2, weighted_area: S::INFINITY };
+    for (pair, count) in memory.windows(2).zip(1..) {
+        left = left.union(aabb_of(&pair[0]));
+        let weighted_area = cost(&left, count) + pair[1].right_cost;
+        if weighted_area < best.weighted_area {
+            best = Best { left: count, weighted_area };
+        }
+    }
+    best
 }
 
 #[cfg(test)]
