@@ -210,30 +210,34 @@ impl<P: Primitive, H: Heuristic<P::Scalar>> Builder<P, H> {
             return Err(BuildError::ZeroLeafSize);
         }
         let primitives = collect(primitives.into_iter())?;
-        let (mut references, skipped) = self.references(&primitives)?;
+        let References { mut valid, skipped } = self.references(&primitives)?;
         let Self { heuristic, max_leaf_size, threads, .. } = &self;
-        let mut tree = in_pool(*threads, || build_tree(&mut references, heuristic, *max_leaf_size))
+        let mut tree = in_pool(*threads, || build_tree(&mut valid, heuristic, *max_leaf_size))
             .map_err(BuildError::ThreadPool)?;
         tree.indices.extend(skipped);
         Ok(Bvh::from_parts(tree, primitives))
     }
 
-    /// The references of the valid primitives, and the indices of the others.
-    fn references(&self, primitives: &[P]) -> Result<(Vec<PrimRef<P::Scalar>>, Vec<u32>), BuildError> {
-        let mut references = Vec::with_capacity(primitives.len());
-        let mut skipped = Vec::new();
+    fn references(&self, primitives: &[P]) -> Result<References<P::Scalar>, BuildError> {
+        let (mut valid, mut skipped) = (Vec::with_capacity(primitives.len()), Vec::new());
         for (index, primitive) in (0..).zip(primitives) {
             let reference = PrimRef { aabb: primitive.aabb(), centroid: primitive.centroid(), index };
             match (flaw(&reference), self.on_invalid) {
-                (None, _) => references.push(reference),
+                (None, _) => valid.push(reference),
                 (Some(_), OnInvalid::Skip) => skipped.push(index),
                 (Some(flaw), OnInvalid::Reject) => {
                     return Err(BuildError::InvalidPrimitive { index: index as usize, flaw });
                 }
             }
         }
-        Ok((references, skipped))
+        Ok(References { valid, skipped })
     }
+}
+
+/// What there is to build from: references to the valid primitives, and the indices of the others.
+struct References<S> {
+    valid: Vec<PrimRef<S>>,
+    skipped: Vec<u32>,
 }
 
 /// At most 2^32 - 1 items of an iterator.
@@ -252,7 +256,7 @@ fn flaw<S: Scalar>(reference: &PrimRef<S>) -> Option<Flaw> {
         return None;
     }
     let bounds = || aabb.min.iter().chain(&aabb.max);
-    Some(if bounds().any(|x| x != x) {
+    Some(if bounds().any(|x| x.is_nan()) {
         Flaw::NanBox
     } else if aabb.is_valid() {
         Flaw::Centroid

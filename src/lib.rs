@@ -1,4 +1,56 @@
-//! Bounding volume hierarchies over any primitive.
+//! Bounding volume hierarchies over any primitive, with the split heuristic of your choice, and
+//! answers that equal the naive loop's bit for bit.
+//!
+//! ```
+//! use bvhkit::{Bvh, Ray, Triangle};
+//!
+//! let triangles = vec![
+//!     Triangle::new([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]),
+//!     Triangle::new([0.0, 0.0, 2.0], [1.0, 0.0, 2.0], [0.0, 1.0, 2.0]),
+//! ];
+//! let bvh = Bvh::build(triangles)?;
+//! let ray = Ray::new([0.25, 0.25, -5.0], [0.0, 0.0, 1.0]); // t in [0, infinity]
+//! if let Some(hit) = bvh.closest_hit(&ray) {
+//!     println!("triangle {} at t = {}", hit.index, hit.t); // its index in the input
+//! }
+//! let in_shadow = bvh.any_hit(&ray.with_interval(1e-4, 4.0));
+//! # assert_eq!((bvh.closest_hit(&ray).unwrap().index, in_shadow), (0, false));
+//! # Ok::<(), bvhkit::BuildError>(())
+//! ```
+//!
+//! # The way through
+//!
+//! ```text
+//! primitives -> boxes and centroids -> driver, asking a heuristic -> tree -> queries -> hits
+//! ```
+//!
+//! - What a tree can hold: [`Primitive`], one method; to be hit by rays, [`Intersect`], one more.
+//!   Built in: [`Triangle`], [`TriangleMesh`], [`Sphere`], [`Aabb`].
+//! - How it is built: [`Bvh::build`] for the good default, [`Bvh::builder`] for a [`Quality`], one
+//!   of the [`heuristic`]s or your own, the leaf size, threads, and what to do with invalid
+//!   primitives.
+//! - What it answers: [`Bvh::closest_hit`], [`Bvh::any_hit`], [`Bvh::hits`], each with
+//!   [`Counters`] on request.
+//! - What to test it, or your own, against: [`reference`](mod@reference).
+//! - What it looks like: [`Bvh::report`], [`Bvh::check`].
+//!
+//! # What is promised
+//!
+//! - **The naive answer.** The hit is that of the loop over all primitives with the same primitive
+//!   test: same t bits, same index, the lowest index where several have the same t. It does not
+//!   depend on heuristic, leaf size or number of threads. How: [`Intersect::intersect`].
+//! - **No panics on data.** NaN, infinities, empty input, degenerate primitives, absurd options: each
+//!   has a documented answer or a typed error, [`BuildError`]. (Your own trait implementations may
+//!   panic, of course.)
+//! - **Bounded depth.** No leaf is deeper than [`MAX_DEPTH`], whatever heuristic and data; closest
+//!   and any hit need no memory but a fixed stack, builds do not recurse.
+//! - **Any math library.** Points go in as anything that converts to `[f32; 3]` or `[f64; 3]`, and
+//!   come out as arrays.
+//!
+//! # Features
+//!
+//! - `rayon` (default): parallel builds; the tree is the same with and without.
+//! - `std` (default): the standard library's square root. Without it the crate is `no_std` + alloc.
 #![no_std]
 #![deny(missing_docs)]
 
@@ -15,6 +67,11 @@ mod query;
 pub mod reference;
 mod simd;
 mod tree;
+
+/// The README's examples are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 pub use build::heuristic;
 pub use build::{PrimRef, ThreadPoolError};

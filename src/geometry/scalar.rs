@@ -46,10 +46,14 @@ pub trait Scalar:
 
     /// The absolute value.
     fn abs(self) -> Self;
+    /// Itself, with its sign turned if `other` has a minus sign.
+    fn turned_by(self, other: Self) -> Self;
     /// The square root, rounded correctly; NaN below zero.
     fn sqrt(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
+    /// Not a number.
+    fn is_nan(self) -> bool;
     /// The next larger number (the smallest subnormal after zero).
     fn next_up(self) -> Self;
     /// The next smaller number.
@@ -108,6 +112,11 @@ macro_rules! scalar {
                 $scalar::abs(self)
             }
             #[inline(always)]
+            fn turned_by(self, other: Self) -> Self {
+                let sign = 1 << ($bits::BITS - 1);
+                Self::from_bits(self.to_bits() ^ (other.to_bits() & sign))
+            }
+            #[inline(always)]
             fn sqrt(self) -> Self {
                 #[cfg(feature = "std")]
                 return $scalar::sqrt(self);
@@ -117,6 +126,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn is_finite(self) -> bool {
                 $scalar::is_finite(self)
+            }
+            #[inline(always)]
+            fn is_nan(self) -> bool {
+                $scalar::is_nan(self)
             }
             #[inline(always)]
             fn next_up(self) -> Self {
@@ -168,7 +181,7 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, glam::Vec3, glam::Vec4, u32, i32, sqrtf);
+scalar!(f32, glam::Vec3A, glam::Vec4, u32, i32, sqrtf);
 scalar!(f64, glam::DVec3, [f64; 4], u64, i64, sqrt);
 
 #[cfg(test)]

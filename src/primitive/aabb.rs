@@ -29,12 +29,9 @@ impl<S: Scalar> Intersect for Aabb<S> {
             near = max((first - ray.origin[axis]) * inv, near);
             far = min((last - ray.origin[axis]) * inv, far);
         }
-        if !(near <= far) {
-            return None;
-        }
         let inside = |t: S| t >= ray.t_min && t <= ray.t_max;
         let t = if inside(near) { near } else { far };
-        inside(t).then_some((t, ()))
+        (near <= far && inside(t)).then_some((t, ()))
     }
 }
 

@@ -55,7 +55,8 @@ impl<S: Scalar> Intersect for Sphere<S> {
     /// The quadratic in the form of Haines, Gunther and Akenine-Moller (Precision Improvements for
     /// Ray/Sphere Intersection, Ray Tracing Gems 2019): the discriminant from the distance between
     /// the ray and the center (no cancellation for small, far spheres), the smaller root from the
-    /// larger (none for origins near the surface).
+    /// larger (none for origins near the surface). Squares of lengths are computed: a direction or a
+    /// distance whose square leaves the scalar's range (1e19 or 1e-19 for f32) misses.
     #[inline(always)]
     fn intersect(&self, ray: &Ray<S>) -> Option<(S, ())> {
         let direction = S::Vec3::from_array(ray.direction);
@@ -65,8 +66,8 @@ impl<S: Scalar> Intersect for Sphere<S> {
         let to_line = to_origin + direction * (b / a);
         let r2 = self.radius * self.radius;
         let discriminant = r2 - to_line.dot(to_line);
-        // False for NaN: an overflow is a miss.
-        if !(discriminant >= S::ZERO) {
+        // A product that overflowed goes on as NaN, and no t is in the interval then.
+        if discriminant < S::ZERO {
             return None;
         }
         let root = (a * discriminant).sqrt();

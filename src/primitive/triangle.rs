@@ -78,23 +78,22 @@ pub(super) fn moller_trumbore<S: Scalar>(
     let edge2 = S::Vec3::from_array(c) - a;
     let direction = S::Vec3::from_array(ray.direction);
     let p = direction.cross(edge2);
-    let det = edge1.dot(p);
+    let signed_det = edge1.dot(p);
+    let det = signed_det.abs();
     let s = S::Vec3::from_array(ray.origin) - a;
-    let sign = if det < S::ZERO { -S::ONE } else { S::ONE };
-    let det = det * sign;
     // u, v and t are det times what they will be.
-    let u = s.dot(p) * sign;
+    let u = s.dot(p).turned_by(signed_det);
     if !(u >= S::ZERO && u <= det) {
         return None;
     }
     let q = s.cross(edge1);
-    let v = direction.dot(q) * sign;
+    let v = direction.dot(q).turned_by(signed_det);
     // A determinant of zero gets past the first comparison, with u = 0, but not past this.
     if !(v >= S::ZERO && u + v <= det && det > S::ZERO) {
         return None;
     }
     let inv_det = S::ONE / det;
-    let t = edge2.dot(q) * sign * inv_det;
+    let t = edge2.dot(q).turned_by(signed_det) * inv_det;
     (t >= ray.t_min && t <= ray.t_max).then(|| (t, Barycentrics { u: u * inv_det, v: v * inv_det }))
 }
 

@@ -34,8 +34,9 @@ pub(crate) fn accept<P: Intersect>(
     limit: P::Scalar,
 ) -> Option<(P::Scalar, P::Payload)> {
     let (t, payload) = primitive.intersect(ray)?;
-    // Most hits end here; raising t would not bring them back.
-    if !(t <= limit) {
+    // Most hits end here, and every NaN; raising t would not bring them back.
+    let in_reach = t <= limit;
+    if !in_reach {
         return None;
     }
     let t = max(t, own_entry(primitive, slabs)?) + P::Scalar::ZERO;

@@ -215,39 +215,47 @@ mod tests {
             .collect()
     }
 
+    /// More boxes than are swept, `step` apart.
+    fn row(step: f32) -> Vec<PrimRef> {
+        unit_boxes(&(0..12u8).map(|i| f32::from(i) * step).collect::<Vec<_>>())
+    }
+
     #[test]
     fn two_clusters_are_separated() {
-        let references = unit_boxes(&[0.0, 1.0, 2.0, 100.0, 101.0]);
-        match split_of(&references, BinnedSah::default(), 1) {
-            Split::Plane { axis: Axis::X, position } => assert!(position > 3.0 && position < 100.0),
+        let clusters: Vec<f32> = (0..12u8).map(|i| f32::from(i) + if i < 5 { 0.0 } else { 100.0 }).collect();
+        match split_of(&unit_boxes(&clusters), BinnedSah::default(), 1) {
+            Split::Plane { axis: Axis::X, position } => assert!(position > 4.5 && position < 105.5),
             other => panic!("{other:?}"),
         }
     }
 
     #[test]
     fn overlapping_boxes_are_left_together_only_where_a_leaf_may_hold_them() {
-        let references = unit_boxes(&[0.0, 0.01, 0.02]);
-        assert_eq!(split_of(&references, BinnedSah::default(), 4), Split::Leaf);
-        assert!(matches!(split_of(&references, BinnedSah::default(), 2), Split::Plane { .. }));
+        let references = row(0.001);
+        assert_eq!(split_of(&references, BinnedSah::default(), 12), Split::Leaf);
+        assert!(matches!(split_of(&references, BinnedSah::default(), 11), Split::Plane { .. }));
     }
 
     #[test]
     fn a_dear_test_splits_what_a_dear_step_leaves_together() {
-        let references = unit_boxes(&[0.0, 0.5, 1.0, 1.5]);
         let with = |traversal, intersection| BinnedSah { bins: 8, cost: SahCost { traversal, intersection } };
-        assert_eq!(split_of(&references, with(9.0, 1.0), 4), Split::Leaf);
-        assert!(matches!(split_of(&references, with(0.1, 1.0), 4), Split::Plane { .. }));
+        assert_eq!(split_of(&row(0.5), with(9.0, 1.0), 12), Split::Leaf);
+        assert!(matches!(split_of(&row(0.5), with(0.1, 1.0), 12), Split::Plane { .. }));
     }
 
     #[test]
     fn coincident_centroids_and_absurd_bin_counts_are_answered() {
-        assert_eq!(split_of(&unit_boxes(&[1.0; 9]), BinnedSah::default(), 2), Split::Leaf);
+        assert_eq!(split_of(&row(0.0), BinnedSah::default(), 2), Split::Leaf);
         for bins in [0, 1, usize::MAX] {
-            assert!(matches!(
-                split_of(&unit_boxes(&[0.0, 9.0]), BinnedSah::new(bins), 1),
-                Split::Plane { .. }
-            ));
+            assert!(matches!(split_of(&row(9.0), BinnedSah::new(bins), 1), Split::Plane { .. }));
         }
+    }
+
+    #[test]
+    fn dust_beside_a_giant_is_binned_over_its_own_extent() {
+        let mut references = row(0.01);
+        references.push(PrimRef { aabb: Aabb::new([-1e6; 3], [1e6; 3]), centroid: [0.0; 3], index: 12 });
+        assert!(matches!(split_of(&references, BinnedSah::default(), 4), Split::Plane { .. }));
     }
 
     #[test]

@@ -1,0 +1,33 @@
+//! A split heuristic of one's own: one method. `cargo run --release --example own_heuristic`
+
+use bvhkit::heuristic::{BuildNode, Heuristic, Median, Split};
+use bvhkit::{Bvh, Counters, Ray, Sphere};
+
+/// Splits the axis on which centroids spread most, at their mean.
+struct Mean;
+
+impl Heuristic<f32> for Mean {
+    fn split(&self, node: &BuildNode<'_>) -> Split {
+        if node.references.len() <= node.max_leaf_size {
+            return Split::Leaf;
+        }
+        let axis = node.centroids.longest_axis();
+        let sum: f32 = node.references.iter().map(|r| r.centroid[axis.index()]).sum();
+        Split::Plane { axis, position: sum / node.references.len() as f32 }
+    }
+}
+
+fn main() -> Result<(), bvhkit::BuildError> {
+    // Spheres along a line, sparser and sparser.
+    let spheres: Vec<Sphere> = (0..1000).map(|i| Sphere::new([(i * i) as f32, 0.0, 0.0], 9.0)).collect();
+    let mean = Bvh::builder().heuristic(Mean).build(&spheres)?;
+    let median = Bvh::builder().heuristic(Median).build(&spheres)?;
+    for (name, bvh) in [("mean", mean), ("median", median)] {
+        let mut counters = Counters::default();
+        for x in 0..10_000 {
+            bvh.any_hit_with(&Ray::new([x as f32 * 100.0, 0.0, -9.0], [0.0, 0.0, 1.0]), &mut counters);
+        }
+        println!("{name}: {counters:?}\n{}\n", bvh.report());
+    }
+    Ok(())
+}
