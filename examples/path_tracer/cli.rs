@@ -31,7 +31,7 @@ pub struct Options {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 
-    /// Samples per pixel [default: 1 to compare or for a heatmap, 4 for normals, else 32 or 64]
+    /// Samples per pixel [default: 1 to compare or for a heatmap, 4 for normals, else 32; 96 for the box]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub spp: Option<u32>,
 

@@ -10,8 +10,8 @@ use comfy_table::{CellAlignment, Table, presets};
 use crate::scene::Shape;
 use crate::tracer::{Method, Query, Tracer};
 
-/// About 20 seconds of the naive loop.
-const MAX_NAIVE_TESTS: u64 = 4_000_000_000;
+/// Ten to twenty seconds of the naive loop.
+const MAX_NAIVE_TESTS: u64 = 2_500_000_000;
 /// Keeps the memory for rays and answers small.
 const MAX_RAYS: u64 = 2_000_000;
 
@@ -36,7 +36,7 @@ pub fn table(
     threads: usize,
 ) -> Result<Table> {
     let mut table = Table::new();
-    table.load_preset(presets::ASCII_MARKDOWN).set_header([
+    table.load_style(presets::ASCII_MARKDOWN).set_header([
         "method",
         "build ms",
         "SAH cost",

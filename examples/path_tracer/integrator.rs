@@ -5,14 +5,14 @@
 
 use std::f32::consts::FRAC_1_PI;
 
-use bvhkit::{Primitive, Ray};
+use bvhkit::{Barycentrics, Primitive, Ray, Triangle};
 use glam::Vec3;
 use rand::RngExt;
 use rand_pcg::Pcg32;
 
 use crate::lights::Lights;
 use crate::sampling;
-use crate::scene::{Material, Scene};
+use crate::scene::{Material, Scene, Shape};
 use crate::tracer::{Caster, Hit};
 
 /// After this many bounces Russian roulette decides whether a path goes on.
@@ -95,12 +95,11 @@ impl<'a> Integrator<'a> {
     /// The light that reaches a diffuse vertex straight from the lights, as reflected by a white
     /// surface.
     fn direct(&self, vertex: &Vertex, caster: &mut Caster<'_>, rng: &mut Pcg32) -> Vec3 {
-        let start = self.spawn(vertex, vertex.geometric);
+        let start = vertex.smooth_point + self.offset * vertex.geometric;
         let mut irradiance = Vec3::ZERO;
         for sample in self.lights.samples(start, rng) {
             let cos = sample.direction.dot(vertex.shading);
-            let in_front = cos > 0.0 && sample.direction.dot(vertex.geometric) > 0.0;
-            if in_front && !caster.any_hit(&sample.shadow_ray) {
+            if cos > 0.0 && !caster.any_hit(&sample.shadow_ray) {
                 irradiance += cos * sample.irradiance;
             }
         }
@@ -119,14 +118,11 @@ impl<'a> Integrator<'a> {
         let outward = self.scene.shapes[hit.index].normal(point);
         let front = direction.dot(outward) < 0.0;
         let geometric = if front { outward } else { -outward };
-        let shading = match (self.scene.surfaces[hit.index].normals, hit.payload) {
-            (Some([a, b, c]), Some(at)) => (1.0 - at.u - at.v) * a + at.u * b + at.v * c,
-            _ => geometric,
-        };
-        let shading = shading.normalize_or(geometric);
-        // Near a silhouette the interpolated normal may face away from the ray.
-        let shading = if shading.dot(geometric) < 0.0 { -shading } else { shading };
-        Vertex { point, geometric, shading, front }
+        let flat = Vertex { point, smooth_point: point, geometric, shading: geometric, front };
+        match (self.scene.shapes[hit.index], self.scene.surfaces[hit.index].normals, hit.payload) {
+            (Shape::Triangle(triangle), Some(normals), Some(at)) => flat.smoothed(&triangle, normals, at),
+            _ => flat,
+        }
     }
 
     /// The origin for a ray that leaves the vertex in `direction`: a little off the surface, so
@@ -140,11 +136,36 @@ impl<'a> Integrator<'a> {
 /// Where a path meets a surface.
 struct Vertex {
     point: Vec3,
+    /// Where shadow rays start.
+    smooth_point: Vec3,
     /// The geometric and the shading normal, on the side that the ray came from.
     geometric: Vec3,
     shading: Vec3,
     /// Whether the ray came to the front; for a glass body: from outside.
     front: bool,
+}
+
+impl Vertex {
+    /// The vertex on a triangle that stands for a curved surface with these normals at its corners.
+    ///
+    /// Shadow rays start from the curved surface: from the triangle, some of those that the shading
+    /// normal calls lit would be blocked by neighbouring triangles, and the edge of the shadow would
+    /// show them (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, chapter 4).
+    fn smoothed(self, triangle: &Triangle, normals: [Vec3; 3], at: Barycentrics) -> Self {
+        let weights = [1.0 - at.u - at.v, at.u, at.v];
+        let corners = [triangle.a, triangle.b, triangle.c].map(Vec3::from);
+        let mut shading = Vec3::ZERO;
+        let mut lift = Vec3::ZERO;
+        for ((weight, corner), normal) in weights.into_iter().zip(corners).zip(normals) {
+            // Near a silhouette and on the inside, normals face away from the ray.
+            let normal = if normal.dot(self.geometric) < 0.0 { -normal } else { normal };
+            shading += weight * normal;
+            let below = (self.point - corner).dot(normal).min(0.0);
+            lift -= weight * below * normal;
+        }
+        let shading = shading.normalize_or(self.geometric);
+        Self { smooth_point: self.point + lift, shading, ..self }
+    }
 }
 
 /// How far off a surface a ray must start to miss it: some hundred times the rounding error of the

@@ -1,5 +1,7 @@
 //! Direct light: picks points of the scene's lights for shadow rays to try.
 
+use std::f32::consts::TAU;
+
 use bvhkit::Ray;
 use glam::Vec3;
 use rand::RngExt;
@@ -63,8 +65,8 @@ impl<'a> Lights<'a> {
         let shape = &self.scene.shapes[index];
         let target = sampling::surface_point(shape, rng);
         let probability = shape.area() * radiance.element_sum() / total;
-        let area = shape.area() / probability;
-        from_area(point, target, shape.normal(target), radiance, area)
+        let radiance = radiance / probability;
+        from_area(point, target, shape.normal(target), radiance, shape.area())
     }
 }
 
@@ -89,14 +91,16 @@ fn sample(light: &Light, point: Vec3, rng: &mut Pcg32) -> Option<LightSample> {
     }
 }
 
-/// The sample of an emitting area at `target`. `area` is one over the density of the choice.
+/// The sample of an emitting area at `target`, which is chosen uniformly.
 fn from_area(point: Vec3, target: Vec3, normal: Vec3, radiance: Vec3, area: f32) -> Option<LightSample> {
     let way = target - point;
     let direction = way.try_normalize()?;
-    let cos = -direction.dot(normal);
-    (cos > 0.0).then(|| LightSample {
+    // No light covers more than a hemisphere. Near to one a sample would say so now and then: those
+    // are the white specks in pictures without this bound.
+    let solid_angle = (-direction.dot(normal) * area / way.length_squared()).min(TAU);
+    (solid_angle > 0.0).then(|| LightSample {
         shadow_ray: Ray::new(point, way).with_interval(0.0, SHADOW_LENGTH),
         direction,
-        irradiance: radiance * (area * cos / way.length_squared()),
+        irradiance: radiance * solid_angle,
     })
 }

@@ -12,6 +12,7 @@ mod lights;
 mod log;
 mod render;
 mod sampling;
+#[cfg_attr(not(test), expect(dead_code, reason = "benches and tests include the folder and use more of it"))]
 mod scene;
 mod tracer;
 
@@ -52,9 +53,6 @@ fn run(options: &Options) -> Result<()> {
     let output = options.output.clone().unwrap_or_else(|| default_output(options));
     let name = options.scene.as_ref().map(|path| path.display().to_string());
     log::line(format_args!("Input scene file: {}", name.as_deref().unwrap_or("(Cornell box)")));
-    if !options.compare {
-        ensure_writable(&output)?;
-    }
     let threads = options.threads.map(usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
     log::line(format_args!("Rendering using {} threads", pool.current_num_threads()));
@@ -63,6 +61,9 @@ fn run(options: &Options) -> Result<()> {
         Some(path) => load(path),
         None => Ok(scene::cornell_box()),
     })?;
+    if !options.compare {
+        ensure_writable(&output)?;
+    }
     let max_leaf_size = options.max_leaf_size.map(usize::from);
     let threads = pool.current_num_threads();
     let building = format!("Building BVH from {} primitives", scene.shapes.len());
@@ -182,7 +183,7 @@ fn samples(options: &Options) -> u32 {
         (View::Heatmap, _) => 1,
         (View::Normals, _) => 4,
         (View::Path, Some(_)) => 32,
-        (View::Path, None) => 64,
+        (View::Path, None) => 96,
     })
 }
 

@@ -29,7 +29,8 @@ impl<S: Scalar> Extent<S> {
 
     #[inline(always)]
     pub fn grow(self, reference: &PrimRef<S>) -> Self {
-        Self { aabb: self.aabb.union(reference.aabb), centroids: self.centroids.grow(reference.centroid) }
+        let centroid = Aabb { min: reference.centroid, max: reference.centroid };
+        Self { aabb: self.aabb.union(reference.aabb), centroids: self.centroids.union(centroid) }
     }
 }
 

@@ -28,17 +28,27 @@ impl<S: Scalar> Aabb<S> {
         Self { min: min.into(), max: max.into() }
     }
 
-    /// The smallest box around `points`.
+    /// The smallest box around `points`; not valid if a coordinate is NaN or infinite.
     #[inline(always)]
     pub fn of_points(points: impl IntoIterator<Item = [S; 3]>) -> Self {
         points.into_iter().fold(Self::EMPTY, Self::grow)
     }
 
-    /// This box, enlarged to hold `point`. A NaN coordinate is ignored.
+    /// This box, enlarged to hold `point`. A NaN, once in, stays: it must not go unnoticed in a
+    /// primitive.
     #[inline(always)]
     #[must_use]
     pub fn grow(self, point: [S; 3]) -> Self {
-        self.union(Self { min: point, max: point })
+        let mut grown = self;
+        for (axis, x) in point.into_iter().enumerate() {
+            if x < grown.min[axis] || x.is_nan() {
+                grown.min[axis] = x;
+            }
+            if x > grown.max[axis] || x.is_nan() {
+                grown.max[axis] = x;
+            }
+        }
+        grown
     }
 
     /// The smallest box around both. A NaN bound of `other` is ignored.
@@ -164,6 +174,17 @@ mod tests {
             let scale = b.area_scale();
             let ratio = half.scaled_half_area(scale) / b.scaled_half_area(scale);
             assert!((ratio - 0.25).abs() < 1e-6, "{unit}: {ratio}");
+        }
+    }
+
+    #[test]
+    fn a_nan_among_points_makes_the_box_invalid_wherever_it_is() {
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for place in 0..9 {
+                let mut points = [[0.0f32, 1.0, 2.0], [3.0, -1.0, 0.5], [1.0, 1.0, 1.0]];
+                points[place / 3][place % 3] = bad;
+                assert!(!Aabb::of_points(points).is_valid(), "{points:?}");
+            }
         }
     }
 

@@ -176,7 +176,7 @@ mod tests {
         assert!(matches!(broken(|t| t.nodes.push(t.nodes[0])), InvariantError::OrphanNode { .. }));
         assert!(matches!(
             broken(|t| {
-                let other = t.nodes.iter().flat_map(|n| n.children).filter(|c| c.is_leaf()).last().unwrap();
+                let other = t.nodes.iter().flat_map(|n| n.children).rfind(|c| c.is_leaf()).unwrap();
                 *leaf_of(t) = other;
                 let everything = Node::new([t.aabb; 2]).planes;
                 t.nodes.iter_mut().for_each(|n| n.planes = everything);

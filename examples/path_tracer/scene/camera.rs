@@ -46,10 +46,13 @@ impl Camera {
     }
 
     /// The ray through a point of the image, given as fractions of its width and height from the
-    /// upper left corner. `aspect` is that of the image.
+    /// upper left corner. `aspect` is that of the image; if it is narrower than the file's, more is
+    /// seen above and below, and nothing is lost to the left and right.
     pub fn ray(&self, image: Vec2, aspect: f32) -> Ray {
-        let x = (2.0 * image.x - 1.0) * self.half_height * aspect;
-        let y = (1.0 - 2.0 * image.y) * self.half_height;
+        let widen = self.aspect.map_or(1.0, |own| (own / aspect).max(1.0));
+        let half_height = self.half_height * widen;
+        let x = (2.0 * image.x - 1.0) * half_height * aspect;
+        let y = (1.0 - 2.0 * image.y) * half_height;
         let direction = self.forward + x * self.right + y * self.up;
         Ray::new(self.position, direction.normalize())
     }

@@ -30,7 +30,7 @@ fn add_room(scene: &mut Scene) {
     let white = scene.add_material(Material::Diffuse { albedo: Vec3::splat(0.74) });
     let red = scene.add_material(Material::Diffuse { albedo: Vec3::new(0.63, 0.06, 0.05) });
     let green = scene.add_material(Material::Diffuse { albedo: Vec3::new(0.14, 0.45, 0.09) });
-    let lamp = scene.add_material(Material::Emitter { radiance: Vec3::new(17.0, 13.0, 8.5) });
+    let lamp = scene.add_material(Material::Emitter { radiance: Vec3::new(5.2, 4.7, 3.9) });
 
     let (x, y, z) = (2.0 * Vec3::X, 2.0 * Vec3::Y, 2.0 * Vec3::Z);
     add_quad(scene, Vec3::new(-1.0, 0.0, -1.0), z, x, white); // floor
@@ -38,7 +38,7 @@ fn add_room(scene: &mut Scene) {
     add_quad(scene, Vec3::new(-1.0, 0.0, -1.0), x, y, white); // back wall
     add_quad(scene, Vec3::new(-1.0, 0.0, -1.0), y, z, red); // left wall
     add_quad(scene, Vec3::new(1.0, 0.0, -1.0), z, y, green); // right wall
-    add_quad(scene, Vec3::new(-0.3, 1.99, -0.3), 0.6 * Vec3::X, 0.6 * Vec3::Z, lamp);
+    add_quad(scene, Vec3::new(-0.5, 1.99, -0.45), Vec3::X, 0.9 * Vec3::Z, lamp);
 }
 
 /// A parallelogram whose front is where `u x v` points.

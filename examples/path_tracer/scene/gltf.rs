@@ -44,7 +44,8 @@ impl Loader {
                 self.add_primitive(&primitive, &transform)?;
             }
         }
-        if let Some(Projection::Perspective(lens)) = node.camera().map(|camera| camera.projection())
+        if let Some(camera) = node.camera()
+            && let Projection::Perspective(lens) = camera.projection()
             && self.scene.camera.is_none()
         {
             self.scene.camera = Some(Camera::from_node(&transform, lens.yfov(), lens.aspect_ratio()));

@@ -30,7 +30,7 @@ impl Sky {
             up,
             zenith: Vec3::new(0.45, 0.68, 1.05),
             horizon: Vec3::new(1.05, 1.10, 1.15),
-            ground: Vec3::new(0.42, 0.40, 0.38),
+            ground: Vec3::new(0.27, 0.26, 0.25),
         }
     }
 

@@ -63,6 +63,10 @@ pub fn load(path: &Path) -> Result<Scene> {
 
     let scene = loader(path).with_context(|| path.display().to_string())?;
     ensure!(!scene.shapes.is_empty(), "{}: the scene has no triangles", path.display());
+    let invalid = scene.shapes.iter().position(|shape| !shape.is_finite());
+    if let Some(index) = invalid {
+        bail!("{}: a coordinate of shape {index} is NaN or infinite", path.display());
+    }
     Ok(scene)
 }
 

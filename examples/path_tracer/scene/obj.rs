@@ -45,7 +45,7 @@ fn triple(values: &[f32], indices: &[u32]) -> Option<[Vec3; 3]> {
 /// The nearest of our materials, by emission, then by the illumination model `illum`: 3 and 5 are
 /// mirrors; 4, 6, 7 and 9 are glass.
 fn convert(material: &tobj::Material) -> Material {
-    let emission = material.unknown_param.get("Ke").and_then(|text| parse_color(text));
+    let emission = material.emissive.map(Vec3::from);
     if let Some(radiance) = emission.filter(|radiance| radiance.max_element() > 0.0) {
         return Material::Emitter { radiance };
     }
@@ -59,12 +59,6 @@ fn convert(material: &tobj::Material) -> Material {
         },
         _ => material.diffuse.map_or(Material::GREY, |albedo| Material::Diffuse { albedo: albedo.into() }),
     }
-}
-
-fn parse_color(text: &str) -> Option<Vec3> {
-    let mut values = text.split_whitespace().map(str::parse::<f32>);
-    let mut next = || values.next()?.ok();
-    Some(Vec3::new(next()?, next()?, next()?))
 }
 
 #[cfg(test)]

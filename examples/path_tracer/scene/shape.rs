@@ -56,6 +56,15 @@ impl Shape {
         }
     }
 
+    /// Whether all its numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let finite = |point: [f32; 3]| Vec3::from(point).is_finite();
+        match self {
+            Self::Triangle(Triangle { a, b, c }) => finite(*a) && finite(*b) && finite(*c),
+            Self::Sphere(sphere) => finite(sphere.center) && sphere.radius.is_finite(),
+        }
+    }
+
     pub fn area(&self) -> f32 {
         match self {
             Self::Triangle(triangle) => 0.5 * edges_cross(triangle).length(),

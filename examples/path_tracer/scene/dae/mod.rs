@@ -6,13 +6,14 @@ mod profile;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
+use bvhkit::{Aabb, Primitive};
 use dae_parser::{
     Document, Effect, Element, Error, Geometry, Instance, LightKind, LocalMap, Node, ProjectionType, Source,
     Transform, UpAxis, Vertices,
 };
 use glam::{Mat4, Vec3};
 
-use super::{Camera, Light, Material, Scene};
+use super::{Camera, Light, Material, Scene, Shape};
 
 /// Nodes nested deeper than this are refused: the instance of a node may contain itself.
 const MAX_DEPTH: usize = 64;
@@ -45,7 +46,21 @@ pub fn load(path: &Path) -> Result<Scene> {
     if scene.surfaces.iter().any(|surface| scene.materials[surface.material].is_emitter()) {
         scene.lights.retain(|light| matches!(light, Light::Directional { .. }));
     }
+    if profile::is_used(&document) {
+        step_back(&mut scene);
+    }
     Ok(scene)
+}
+
+/// The profile's own renderer takes from a camera only its lens and its direction, and steps back
+/// from the middle of the scene until all of it is in view. Its scene files are made for that.
+fn step_back(scene: &mut Scene) {
+    let boxes = scene.shapes.iter().map(Shape::aabb);
+    let Some(all) = boxes.reduce(Aabb::union) else { return };
+    if let Some(camera) = &mut scene.camera {
+        let diagonal = Vec3::from(all.extent()).length();
+        camera.position = Vec3::from(all.center()) - 1.5 * diagonal * camera.forward;
+    }
 }
 
 /// Parses the text. The schema wants a shape in every `<geometry>` and so does the parser, but an
@@ -204,7 +219,7 @@ fn local(step: &Transform) -> Mat4 {
         }
         Transform::LookAt(view) => {
             let [eye, target, up] = [*view.eye(), *view.target(), *view.up()].map(Vec3::from);
-            Mat4::look_at_rh(eye, target, up).inverse()
+            glam::camera::rh::view::look_at_mat4(eye, target, up).inverse()
         }
         // A shear is as good as absent from files; it is left out.
         Transform::Skew(_) => Mat4::IDENTITY,
@@ -260,7 +275,7 @@ mod tests {
         let scene = load_with_index("3", "good").unwrap();
         assert_eq!(scene.up, Some(Vec3::Z));
         assert_eq!(scene.shapes.len(), 3);
-        let super::super::Shape::Sphere(ball) = scene.shapes[0] else { panic!("no sphere") };
+        let Shape::Sphere(ball) = scene.shapes[0] else { panic!("no sphere") };
         assert_eq!((ball.center, ball.radius), ([0.0, 0.0, 3.0], 1.0));
         assert_eq!(*scene.material(0), Material::Glass { transmittance: Vec3::ONE, ior: 1.45 });
         assert_eq!(scene.triangles()[1].c, [5.0, 1.0, 0.0]);

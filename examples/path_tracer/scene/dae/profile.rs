@@ -1,7 +1,7 @@
 //! Materials of COLLADA, and what its profile CMU462 adds in `<extra>` elements: mirror, glass,
 //! emission, area lights and spheres. The scene files of the course 15-462 use that profile.
 
-use dae_parser::{Effect, Element, Extra, Geometry, Light, Shader};
+use dae_parser::{Document, Effect, Element, Extra, Geometry, Light, Shader};
 use glam::Vec3;
 
 use super::Material;
@@ -57,6 +57,13 @@ pub fn sphere_radius(geometry: &Geometry) -> Option<f32> {
 pub fn area_radiance(light: &Light) -> Option<Vec3> {
     let color = numbers(find(&light.extra, "area")?, "color")?;
     color.first_chunk::<3>().copied().map(Vec3::from)
+}
+
+/// Whether the file uses the profile for materials or spheres.
+pub fn is_used(document: &Document) -> bool {
+    let effects = document.iter().flat_map(|effect: &Effect| &effect.extra);
+    let geometries = document.iter().flat_map(|geometry: &Geometry| &geometry.extra);
+    effects.chain(geometries).flat_map(elements).next().is_some()
 }
 
 fn find<'a>(extras: &'a [Extra], name: &str) -> Option<&'a Element> {

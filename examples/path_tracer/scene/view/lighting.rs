@@ -2,14 +2,17 @@
 
 use std::f32::consts::PI;
 
+use bvhkit::Ray;
 use glam::Vec3;
 
 use super::super::{Camera, Light, Scene, Sky};
 use super::{Sight, Survey, directions, raster};
 
 /// The sun is used if it reaches this share of what is in the picture.
-const ENOUGH_SUN: f32 = 0.2;
-const MAX_LAMPS: usize = 3;
+const ENOUGH_SUN: f32 = 0.25;
+const MAX_LAMPS: usize = 6;
+/// How far a lamp's light is taken to be of use, in heights of the room.
+const REACH: f32 = 2.5;
 
 /// Whether all light comes from distant lights.
 pub fn is_sunlight_only(scene: &Scene) -> bool {
@@ -28,12 +31,14 @@ pub fn choose(survey: &Survey<'_>, camera: &Camera) -> (Vec<Light>, Sky) {
             let irradiance = PI * Vec3::new(1.75, 1.6, 1.35);
             (vec![Light::Directional { direction: -direction, irradiance }], sky)
         }
-        None => (lamps(survey, camera, &seen), sky),
+        // Little of a bright sky would get in by the windows: more noise than light.
+        None => (lamps(survey, camera, &seen), sky.scaled(0.08)),
     }
 }
 
 /// The direction towards the sun: over the camera's left shoulder if what is in the picture can be
-/// lit from there, else the direction of the upper hemisphere that lights most of it.
+/// lit from there, else the direction that lights most of it. That one is high: light comes into a
+/// court from there, whereas a low sun through a window only makes a spot on the floor.
 fn sun(survey: &Survey<'_>, camera: &Camera, seen: &[Sight]) -> Option<Vec3> {
     let lit = |direction: Vec3| {
         let lit = seen.iter().filter(|sight| survey.is_clear(sight, direction, f32::INFINITY));
@@ -44,49 +49,64 @@ fn sun(survey: &Survey<'_>, camera: &Camera, seen: &[Sight]) -> Option<Vec3> {
     if lit(shoulder) > ENOUGH_SUN {
         return Some(shoulder);
     }
-    let high = directions(48).filter(|direction| direction.dot(survey.up) > 0.4);
+    let high = directions(48).filter(|direction| direction.dot(survey.up) > 0.7);
     let best = high.map(|direction| (lit(direction), direction)).max_by(|a, b| a.0.total_cmp(&b.0));
     best.filter(|best| best.0 > ENOUGH_SUN).map(|best| best.1)
 }
 
 /// Square lamps that shine down from below the ceiling. Each is put where it reaches most of what
-/// the ones before it leave dark; candidates hang above the points in the picture, and the camera.
+/// the ones before it leave dark, as long as that is worth a lamp. Candidates hang above the points
+/// in the picture and above the camera; not those below furniture, where the ceiling is low.
 fn lamps(survey: &Survey<'_>, camera: &Camera, seen: &[Sight]) -> Vec<Light> {
     let up = survey.up;
-    let from_camera = Sight { t: 0.0, point: camera.position, normal: up, front: true };
-    let floor = seen.iter().filter(|sight| sight.normal.dot(up) > 0.7);
-    let candidates: Vec<(Vec3, f32)> = floor
-        .chain([&from_camera])
+    let floor = seen.iter().filter(|sight| sight.normal.dot(up) > 0.7).map(|sight| sight.point);
+    let mut candidates: Vec<Lamp> = floor
+        .chain([camera.position])
         .filter_map(|below| {
-            let start = below.point + 1e-4 * survey.region.diagonal() * up;
-            let height = survey.look(&bvhkit::Ray::new(start, up))?.t;
-            Some((below.point + 0.9 * height * up, height))
+            let start = below + 1e-4 * survey.region.diagonal() * up;
+            let height = survey.look(&Ray::new(start, up))?.t;
+            Some(Lamp { position: below + 0.9 * height * up, height })
         })
         .collect();
+    let highest = candidates.iter().map(|lamp| lamp.position.dot(up)).fold(f32::MIN, f32::max);
+    let lowest = survey.region.min.dot(up.abs());
+    candidates.retain(|lamp| lamp.position.dot(up) - lowest > 0.6 * (highest - lowest));
 
     let mut dark: Vec<&Sight> = seen.iter().collect();
     let mut lights = Vec::new();
-    for _ in 0..MAX_LAMPS {
-        let reaches = |lamp: Vec3, sight: &Sight| {
-            let way = lamp - sight.point;
-            way.dot(up) > 0.0 && survey.is_clear(sight, way, 0.99)
-        };
-        let count = |lamp: Vec3| dark.iter().filter(|sight| reaches(lamp, sight)).count();
-        let best = candidates.iter().map(|it| (count(it.0), it)).max_by_key(|it| it.0);
-        let Some((count, &(lamp, height))) = best else { break };
-        if count == 0 {
+    while lights.len() < MAX_LAMPS {
+        let reached = |lamp: &Lamp| dark.iter().filter(|sight| lamp.reaches(survey, sight)).count();
+        let best = candidates.iter().map(|lamp| (reached(lamp), lamp)).max_by_key(|it| it.0);
+        let Some((count, lamp)) = best else { break };
+        if count * 10 < seen.len() {
             break;
         }
-        dark.retain(|sight| !reaches(lamp, sight));
-        let (u, v) = up.any_orthonormal_pair();
-        let (u, v) = (0.25 * height * u, 0.25 * height * v);
-        let down = if u.cross(v).dot(up) < 0.0 { (u, v) } else { (v, u) };
-        lights.push(Light::Rectangle {
-            corner: lamp - 0.5 * (u + v),
-            u: down.0,
-            v: down.1,
-            radiance: Vec3::new(11.0, 10.0, 8.5),
-        });
+        dark.retain(|sight| !lamp.reaches(survey, sight));
+        lights.push(lamp.light(up));
     }
     lights
+}
+
+/// A place for a lamp, and its height above what is below it.
+struct Lamp {
+    position: Vec3,
+    height: f32,
+}
+
+impl Lamp {
+    /// Whether the light comes to what is seen, and is not too faint there.
+    fn reaches(&self, survey: &Survey<'_>, sight: &Sight) -> bool {
+        let way = self.position - sight.point;
+        let near = way.length() < REACH * self.height;
+        near && way.dot(survey.up) > 0.0 && survey.is_clear(sight, way, 0.99)
+    }
+
+    fn light(&self, up: Vec3) -> Light {
+        let side = 0.35 * self.height;
+        let (u, v) = up.any_orthonormal_pair();
+        // In the order in which the front faces down.
+        let (u, v) = if u.cross(v).dot(up) < 0.0 { (u, v) } else { (v, u) };
+        let corner = self.position - 0.5 * side * (u + v);
+        Light::Rectangle { corner, u: side * u, v: side * v, radiance: Vec3::new(11.0, 10.0, 8.5) }
+    }
 }

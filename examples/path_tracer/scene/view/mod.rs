@@ -3,7 +3,7 @@
 mod lighting;
 mod viewpoint;
 
-use bvhkit::{Primitive, Ray};
+use bvhkit::{Aabb, Primitive, Ray};
 use glam::Vec3;
 
 use super::{Scene, Shape};
@@ -22,7 +22,7 @@ pub fn complete(scene: &mut Scene, closest_hit: impl Fn(&Ray) -> Option<(f32, us
         scene.sky = Some(sky);
     } else if scene.sky.is_none() && lighting::is_sunlight_only(scene) {
         // Where the sun shines there is a sky, and shadows are not black.
-        scene.sky = Some(super::Sky::day(up).scaled(0.35));
+        scene.sky = Some(super::Sky::day(up).scaled(0.25));
     }
 }
 
@@ -38,6 +38,7 @@ struct Survey<'a> {
 /// Where a ray ends.
 #[derive(Clone, Copy)]
 struct Sight {
+    shape: usize,
     t: f32,
     point: Vec3,
     /// The geometric normal, on the side that the ray came from.
@@ -49,7 +50,7 @@ struct Sight {
 impl<'a> Survey<'a> {
     fn new(scene: &'a Scene, closest_hit: &'a dyn Fn(&Ray) -> Option<(f32, usize)>) -> Self {
         let region = Region::of_interest(&scene.shapes);
-        let up = scene.up.unwrap_or_else(|| region.likely_up());
+        let up = scene.up.unwrap_or_else(|| Region::of_all(&scene.shapes).likely_up());
         Self { scene, closest_hit, region, up }
     }
 
@@ -59,7 +60,7 @@ impl<'a> Survey<'a> {
         let point = Vec3::from(ray.at(t));
         let normal = self.scene.shapes[index].normal(point);
         let front = normal.dot(Vec3::from(ray.direction)) < 0.0;
-        Some(Sight { t, point, normal: if front { normal } else { -normal }, front })
+        Some(Sight { shape: index, t, point, normal: if front { normal } else { -normal }, front })
     }
 
     /// Whether nothing blocks the way from a point seen into `direction`, up to `distance`.
@@ -75,17 +76,20 @@ impl<'a> Survey<'a> {
 struct Region {
     min: Vec3,
     max: Vec3,
+    /// Whether there are shapes far outside of it.
+    is_part: bool,
 }
 
 impl Region {
+    fn of_all(shapes: &[Shape]) -> Self {
+        let all = shapes.iter().map(Shape::aabb).fold(Aabb::EMPTY, Aabb::union);
+        Self { min: all.min.into(), max: all.max.into(), is_part: false }
+    }
+
     /// The box of all shapes; or, if most shapes crowd into a small part of it, that part: a ship
     /// in front of a backdrop is what the picture is about, not the backdrop.
     fn of_interest(shapes: &[Shape]) -> Self {
-        let boxes = shapes.iter().map(Shape::aabb);
-        let all = boxes.map(|aabb| Self { min: aabb.min.into(), max: aabb.max.into() });
-        let all = all.reduce(|a, b| Self { min: a.min.min(b.min), max: a.max.max(b.max) });
-        let all = all.unwrap_or(Self { min: Vec3::ZERO, max: Vec3::ONE });
-
+        let all = Self::of_all(shapes);
         let mut low = Vec3::ZERO;
         let mut high = Vec3::ZERO;
         for axis in 0..3 {
@@ -95,8 +99,8 @@ impl Region {
             high[axis] = centers[centers.len() - 1 - centers.len() / 50];
         }
         let margin = 0.1 * (high - low);
-        let crowd = Self { min: low - margin, max: high + margin };
-        if crowd.diagonal() < 0.4 * all.diagonal() { crowd } else { all }
+        let crowd = Self { min: low - margin, max: high + margin, is_part: true };
+        if crowd.diagonal() < 0.65 * all.diagonal() { crowd } else { all }
     }
 
     /// +y, unless the box is flat in z: what lies flat, lies on the ground.
@@ -116,10 +120,6 @@ impl Region {
     /// The point at these fractions of the box's sides.
     fn at(&self, fractions: Vec3) -> Vec3 {
         self.min + fractions * (self.max - self.min)
-    }
-
-    fn corners(&self) -> impl Iterator<Item = Vec3> {
-        (0..8).map(|i| self.at(Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32)))
     }
 
     /// Whether the point is in the box, or outside by no more than rounding.

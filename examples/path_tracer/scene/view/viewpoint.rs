@@ -1,15 +1,18 @@
 //! Where to put the camera: inside of a room, or in front of an object.
 
+use std::collections::HashSet;
 use std::f32::consts::TAU;
 
-use glam::Vec3;
+use bvhkit::{Primitive, Ray};
+use glam::{Vec2, Vec3};
 
 use super::super::Camera;
 use super::{Survey, directions, raster};
 
 /// Width over height of the picture that viewpoints are judged by.
 const ASPECT: f32 = 4.0 / 3.0;
-const ROOM_FOV: f32 = 1.15;
+/// Vertical fields of view, in radians.
+const ROOM_FOV: f32 = 1.1;
 const OBJECT_FOV: f32 = 0.7;
 
 /// A camera that sees the scene well.
@@ -17,41 +20,18 @@ pub fn choose(survey: &Survey<'_>) -> Camera {
     in_a_room(survey).unwrap_or_else(|| before_an_object(survey))
 }
 
-/// A viewpoint inside, looking along the longest free view; `None` if no point of the scene is
-/// surrounded by surfaces that face it at some distance. In the inside of a solid object rays meet
-/// back faces; beside an object they leave the region.
+/// A viewpoint inside, with a long free view; `None` if no point of the scene is in a room.
 fn in_a_room(survey: &Survey<'_>) -> Option<Camera> {
-    let region = &survey.region;
-    let room_like = |&point: &Vec3| {
-        let mut facing = 0;
-        let mut depth = 0.0;
-        let rays = 48;
-        for direction in directions(rays) {
-            let sight = survey.look(&bvhkit::Ray::new(point, direction));
-            if let Some(sight) = sight.filter(|it| it.front && region.contains_nearly(it.point)) {
-                facing += 1;
-                depth += sight.t;
-            }
-        }
-        facing * 10 >= rays * 7 && depth / facing as f32 > 0.1 * region.diagonal()
-    };
-    let steps = [0.1, 0.3, 0.5, 0.7, 0.9];
-    let heights = [0.3, 0.5];
-    let across = survey.up.any_orthonormal_pair();
-    let grid = heights.into_iter().flat_map(|height| {
-        steps.into_iter().flat_map(move |x| steps.into_iter().map(move |y| (height, x, y)))
-    });
-    let points = grid.map(|(height, x, y)| {
-        let fractions = height * survey.up.abs() + x * across.0.abs() + y * across.1.abs();
-        region.at(fractions)
-    });
-
+    if survey.region.is_part {
+        return None;
+    }
     let mut best = (0.0, None);
-    for point in points.filter(room_like) {
-        for direction in around(survey.up, 12) {
-            let level = direction - 0.12 * survey.up;
-            let camera = Camera::look_at(point, point + level, survey.up, ROOM_FOV);
-            let score = depth_of_view(survey, &camera);
+    for point in grid(survey) {
+        let Some(space) = space_around(survey, point) else { continue };
+        for direction in around(survey.up, 0.0, 16) {
+            let target = point + direction - 0.1 * survey.up;
+            let camera = Camera::look_at(point, target, survey.up, ROOM_FOV);
+            let score = space.sqrt() * view_quality(survey, &camera);
             if score > best.0 {
                 best = (score, Some(camera));
             }
@@ -60,58 +40,108 @@ fn in_a_room(survey: &Survey<'_>) -> Option<Camera> {
     best.1
 }
 
-/// How far one can see: long views count, what is right before the lens or turns its back does not.
-fn depth_of_view(survey: &Survey<'_>, camera: &Camera) -> f32 {
-    let diagonal = survey.region.diagonal();
-    raster(6, 4)
-        .map(|image| match survey.look(&camera.ray(image, ASPECT)) {
-            Some(sight) if !sight.front => -0.5,
-            Some(sight) if sight.t < 0.05 * diagonal => -0.2,
-            Some(sight) => (sight.t / diagonal).min(1.0).sqrt(),
-            None => 0.1,
-        })
-        .sum()
+/// Points spread over the region, at about the height of eyes.
+fn grid(survey: &Survey<'_>) -> impl Iterator<Item = Vec3> {
+    const STEPS: usize = 7;
+    let up = survey.up.abs();
+    let (x, y) = survey.up.any_orthonormal_pair();
+    let (x, y) = (x.abs(), y.abs());
+    [0.25, 0.5].into_iter().flat_map(move |height| {
+        raster(STEPS, STEPS).map(move |at| survey.region.at(height * up + at.x * x + at.y * y))
+    })
 }
 
-/// A viewpoint from which the whole region is in the picture, on the side where the object covers
-/// most of it; the front (+z, or -y if z is up) if there is little between them.
+/// How much space there is around a point of a room; `None` if it is not in a room, that is, not
+/// surrounded by surfaces that face it at some distance. In the inside of a solid object rays meet
+/// back faces; beside an object they leave the region.
+fn space_around(survey: &Survey<'_>, point: Vec3) -> Option<f32> {
+    let rays = 48;
+    let mut facing = 0;
+    let mut space = 0.0;
+    for direction in directions(rays) {
+        let sight = survey.look(&Ray::new(point, direction));
+        if let Some(sight) = sight.filter(|it| it.front && survey.region.contains_nearly(it.point)) {
+            facing += 1;
+            space += sight.t / survey.region.diagonal() / rays as f32;
+        }
+    }
+    (facing * 10 >= rays * 7 && space > 0.07).then_some(space)
+}
+
+/// How much there is to see: long views count, in the middle of the picture twice, and so does each
+/// shape, since bare walls have few. What is near the lens, or turns its back, is in the way.
+fn view_quality(survey: &Survey<'_>, camera: &Camera) -> f32 {
+    let diagonal = survey.region.diagonal();
+    let mut depth = 0.0;
+    let mut shapes = HashSet::new();
+    for image in raster(8, 6) {
+        let in_the_middle = (image - 0.5).abs().max_element() < 0.3;
+        let (weight, near) = if in_the_middle { (2.0, 0.16) } else { (1.0, 0.08) };
+        depth += match survey.look(&camera.ray(image, ASPECT)) {
+            Some(sight) if !sight.front || sight.t < near * diagonal => -0.5 * weight,
+            Some(sight) => {
+                shapes.insert(sight.shape);
+                weight * (sight.t / diagonal).min(0.5).sqrt()
+            }
+            None => 0.1 * weight,
+        };
+    }
+    depth * (10 + shapes.len()) as f32
+}
+
+/// A viewpoint from which all that is in the region fills the picture, on the side where the object
+/// covers most of it; the front (+z, or -y if z is up) if there is little between them.
 fn before_an_object(survey: &Survey<'_>) -> Camera {
-    let center = survey.region.center();
-    let cameras = around(survey.up, 8).map(|direction| {
-        let backward = (direction + 0.3 * survey.up).normalize();
-        let camera = Camera::look_at(center + backward, center, survey.up, OBJECT_FOV);
-        let (half_height, back) = ((0.5 * OBJECT_FOV).tan(), -camera.forward);
-        // The least distance at which every corner of the region is inside the picture.
-        let distance = survey.region.corners().map(|corner| {
-            let offset = corner - center;
-            let x = offset.dot(camera.right()).abs() / (half_height * ASPECT);
-            let y = offset.dot(camera.right().cross(camera.forward)).abs() / half_height;
-            offset.dot(back) + 1.05 * x.max(y)
-        });
-        let distance = distance.fold(0.0, f32::max);
-        Camera::look_at(center + distance * backward, center, survey.up, OBJECT_FOV)
-    });
     let mut best = (f32::NEG_INFINITY, None);
-    for (i, camera) in cameras.enumerate() {
-        let in_region = |image| {
-            let sight = survey.look(&camera.ray(image, ASPECT));
+    for (i, direction) in around(survey.up, 0.4, 8).enumerate() {
+        let camera = framing(survey, direction + 0.3 * survey.up);
+        let in_region = |image: &Vec2| {
+            let sight = survey.look(&camera.ray(*image, ASPECT));
             sight.is_some_and(|sight| survey.region.contains_nearly(sight.point))
         };
-        let covered = raster(16, 12).filter(|&image| in_region(image)).count() as f32 / 192.0;
-        let score = covered + if i < 2 { 0.05 } else { 0.0 };
+        let covered = raster(16, 12).filter(in_region).count() as f32 / (16.0 * 12.0);
+        let score = if i < 2 { covered + 0.05 } else { covered };
         if score > best.0 {
             best = (score, Some(camera));
         }
     }
-    best.1.unwrap_or_else(|| Camera::look_at(center + Vec3::Z, center, survey.up, OBJECT_FOV))
+    best.1.unwrap_or_else(|| framing(survey, Vec3::Z))
 }
 
-/// Horizontal directions all around, from the front (turned a little) on.
-fn around(up: Vec3, count: usize) -> impl Iterator<Item = Vec3> {
+/// The camera that looks against `backward`, as close as it can be with the object in the picture.
+fn framing(survey: &Survey<'_>, backward: Vec3) -> Camera {
+    let backward = backward.normalize_or(Vec3::Z);
+    let center = survey.region.center();
+    let turned = Camera::look_at(center + backward, center, survey.up, OBJECT_FOV);
+    let (right, above) = (turned.right(), turned.right().cross(turned.forward));
+    let boxes = survey.scene.shapes.iter().map(|shape| shape.aabb());
+    let ends = boxes.flat_map(|aabb| [aabb.min, aabb.max].map(Vec3::from));
+    let points: Vec<Vec3> = ends
+        .filter(|&point| survey.region.contains_nearly(point))
+        .map(|point| point - center)
+        .map(|point| Vec3::new(point.dot(right), point.dot(above), point.dot(backward)))
+        .collect();
+
+    // Aim at the middle of what is seen; then step back until each point is inside the picture.
+    let low = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);
+    let high = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
+    let middle = if low.cmple(high).all() { 0.5 * (low + high) } else { Vec3::ZERO };
+    let half_height = (0.5 * OBJECT_FOV).tan();
+    let distance = points.iter().map(|point| {
+        let offset = (*point - middle).abs();
+        point.z + 1.12 * (offset.x / (half_height * ASPECT)).max(offset.y / half_height)
+    });
+    let distance = distance.fold(1e-3 * survey.region.diagonal(), f32::max);
+    let target = center + middle.x * right + middle.y * above;
+    Camera::look_at(target + distance * backward, target, survey.up, OBJECT_FOV)
+}
+
+/// `count` horizontal directions all around, the first one `turn` radians off the front.
+fn around(up: Vec3, turn: f32, count: usize) -> impl Iterator<Item = Vec3> {
     let front = if up == Vec3::Z { Vec3::NEG_Y } else { Vec3::Z };
     let right = front.cross(up);
     (0..count).map(move |i| {
-        let (sin, cos) = (0.4 - i as f32 / count as f32 * TAU).sin_cos();
+        let (sin, cos) = (turn - i as f32 / count as f32 * TAU).sin_cos();
         cos * front - sin * right
     })
 }

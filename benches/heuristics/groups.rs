@@ -1,0 +1,41 @@
+//! Criterion's groups: build, closest hit and any hit, for each scene and size.
+
+use crate::hierarchy::Method;
+use crate::workload::Workload;
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, SamplingMode, Throughput};
+
+/// `size` is the number of triangles by name; the scene may have a few less.
+pub fn measure(criterion: &mut Criterion, size: usize, workload: &Workload, methods: &[Method]) {
+    let Workload { name, triangles, closest, any } = workload;
+    let mut group = |query: &str, elements: usize, bench: &dyn Fn(&mut BenchmarkGroup<'_, WallTime>)| {
+        let mut group = criterion.benchmark_group(format!("{query}/{name}/{size}"));
+        // An iteration takes milliseconds: more of them in later samples would only cost time.
+        group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(elements as u64));
+        bench(&mut group);
+        group.finish();
+    };
+
+    let builds: Vec<_> = methods.iter().map(|method| (method.name, (method.prepare)(triangles))).collect();
+    group("build", triangles.len(), &|group| {
+        for (name, build) in &builds {
+            group.bench_function(*name, |bencher| bencher.iter_with_large_drop(build));
+        }
+    });
+
+    let built: Vec<_> = builds.iter().map(|(name, build)| (name, build())).collect();
+    group("closest", closest.len(), &|group| {
+        for (name, hierarchy) in &built {
+            let mut hits = Vec::new();
+            group.bench_function(**name, |bencher| {
+                bencher.iter(|| hierarchy.closest_hits(closest, &mut hits))
+            });
+        }
+    });
+    group("any", any.len(), &|group| {
+        for (name, hierarchy) in &built {
+            let mut hits = Vec::new();
+            group.bench_function(**name, |bencher| bencher.iter(|| hierarchy.any_hits(any, &mut hits)));
+        }
+    });
+}

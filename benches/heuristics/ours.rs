@@ -1,0 +1,51 @@
+//! This crate's heuristics.
+
+use crate::hierarchy::{Build, Hierarchy, Hit, Method, Statistics};
+use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, SweepSah};
+use bvhkit::{Bvh, Counters, Ray, Triangle};
+
+pub fn methods() -> [Method; 4] {
+    [
+        method("median", |triangles| prepare(Median, triangles)),
+        method("midpoint", |triangles| prepare(Midpoint, triangles)),
+        method("binned", |triangles| prepare(BinnedSah::default(), triangles)),
+        method("sweep", |triangles| prepare(SweepSah::default(), triangles)),
+    ]
+}
+
+fn method(name: &'static str, prepare: fn(&[Triangle]) -> Build) -> Method {
+    Method { name, ours: true, prepare }
+}
+
+fn prepare(heuristic: impl Heuristic<f32> + Copy + 'static, triangles: &[Triangle]) -> Build {
+    let triangles = triangles.to_vec();
+    Box::new(move || {
+        let builder = Bvh::builder().heuristic(heuristic);
+        Box::new(builder.build(triangles.iter().copied()).expect("the coordinates are finite"))
+    })
+}
+
+impl Hierarchy for Bvh<Triangle> {
+    fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
+        self.closest_hit(ray).map(|hit| Hit { t: hit.t, index: hit.index, payload: () })
+    }
+
+    fn any_hit(&self, ray: &Ray) -> bool {
+        self.any_hit(ray)
+    }
+
+    fn statistics(&self, rays: &[Ray]) -> Statistics {
+        let mut counters = Counters::default();
+        for ray in rays {
+            self.closest_hit_with(ray, &mut counters);
+        }
+        let report = self.report();
+        let per_ray = |count: u64| Some(count as f64 / rays.len() as f64);
+        Statistics {
+            sah_cost: Some(report.sah_cost),
+            max_depth: Some(report.max_depth),
+            nodes_per_ray: per_ray(counters.nodes),
+            tests_per_ray: per_ray(counters.primitives),
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! The closing table: every method side by side.
+
+use crate::agreement::Disagreements;
+use crate::check::Check;
+use crate::hierarchy::{Method, Statistics};
+use crate::timing::interleaved;
+use crate::workload::Workload;
+use bvhkit::Ray;
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use std::time::Duration;
+
+const HEADER: [&str; 14] = [
+    "scene",
+    "method",
+    "build\nms",
+    "SAH\ncost",
+    "depth",
+    "nodes\nper ray",
+    "tests\nper ray",
+    "closest\nMrays/s",
+    "any\nMrays/s",
+    "differ\nfrom naive",
+    "hit or\nmiss",
+    "other\ntriangle",
+    "tie",
+    "t\nrounded",
+];
+
+const LEGEND: &str = "\
+One thread; medians of times, methods taking turns. Builds include putting the triangles in the tree's order.
+Closest: primary, diffuse and random rays. Any: shadow rays. Nodes and tests: per closest hit.
+SAH cost: 1 for the step through an inner node, 1 for the test of a triangle.
+Differ from naive: of a sample, the rays that hit where the naive reference says miss, miss where it says hit,
+or hit another triangle. Ours are equal to it in the bits of t and in the index, or there is no table.
+Then, of all rays, those that differ from ours, which all agree: by hit or miss, by another triangle, by
+another triangle of the same t (tie), by other bits of t on the same triangle (t rounded).";
+
+/// Measures each workload with each method and prints the table.
+pub fn print(workloads: impl Iterator<Item = Workload>, methods: &[Method], repetitions: usize) {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN).set_content_arrangement(ContentArrangement::Disabled);
+    table.set_header(HEADER);
+    for column in table.column_iter_mut().skip(2) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    for workload in workloads {
+        table.add_rows(rows(&workload, methods, repetitions));
+    }
+    println!("\n{LEGEND}\n");
+    println!("{table}");
+}
+
+fn rows(workload: &Workload, methods: &[Method], repetitions: usize) -> Vec<Vec<String>> {
+    let Workload { name, triangles, closest, any } = workload;
+    let builds: Vec<_> = methods.iter().map(|method| (method.prepare)(triangles)).collect();
+    let built: Vec<_> = builds.iter().map(|build| build()).collect();
+    let check = Check::new(workload, methods, &built);
+    // Down the first column, beside the methods.
+    let facts = [
+        name.clone(),
+        format!("{} triangles", triangles.len()),
+        format!("{} rays", closest.len() + any.len()),
+        format!("{} of them naively", check.sample),
+    ];
+
+    let build_times = interleaved(methods.len(), repetitions, |i| builds[i]());
+    let mut hits = Vec::with_capacity(closest.len());
+    let closest_times =
+        interleaved(methods.len(), repetitions, |i| built[i].closest_hits(closest, &mut hits));
+    let mut hits = Vec::with_capacity(any.len());
+    let any_times = interleaved(methods.len(), repetitions, |i| built[i].any_hits(any, &mut hits));
+
+    let mut facts = facts.into_iter();
+    let row = |i: usize| {
+        let Statistics { sah_cost, max_depth, nodes_per_ray, tests_per_ray } = built[i].statistics(closest);
+        let decimal = |number: Option<f64>| number.map_or("-".into(), |number| format!("{number:.1}"));
+        let mut row = vec![
+            facts.next().unwrap_or_default(),
+            methods[i].name.into(),
+            format!("{:.1}", build_times[i].as_secs_f64() * 1e3),
+            decimal(sah_cost),
+            max_depth.map_or("-".into(), |depth| depth.to_string()),
+            decimal(nodes_per_ray),
+            decimal(tests_per_ray),
+            mega_rays(closest, closest_times[i]),
+            mega_rays(any, any_times[i]),
+        ];
+        let Disagreements { hit_or_miss, triangle, tie, rounding } = check.from_ours[i];
+        row.push(format!("{} of {}", check.from_naive[i].visible(), check.sample));
+        row.extend([hit_or_miss, triangle, tie, rounding].map(|rays| rays.to_string()));
+        row
+    };
+    (0..methods.len()).map(row).collect()
+}
+
+fn mega_rays(rays: &[Ray], time: Duration) -> String {
+    format!("{:.2}", rays.len() as f64 / time.as_secs_f64() / 1e6)
+}

@@ -1,0 +1,30 @@
+//! Times of several candidates, measured side by side.
+
+use std::time::{Duration, Instant};
+
+/// The median duration of each candidate's `run`, by its position, without dropping its result.
+///
+/// Candidates take turns, in an order reversed each time (A B C, C B A, ...), so that a machine that
+/// slows down meanwhile slows all of them down alike.
+pub fn interleaved<T>(
+    candidates: usize,
+    repetitions: usize,
+    mut run: impl FnMut(usize) -> T,
+) -> Vec<Duration> {
+    let mut durations = vec![Vec::with_capacity(repetitions); candidates];
+    for repetition in 0..repetitions {
+        for turn in 0..candidates {
+            let candidate = if repetition % 2 == 0 { turn } else { candidates - 1 - turn };
+            let start = Instant::now();
+            let result = run(candidate);
+            durations[candidate].push(start.elapsed());
+            drop(result);
+        }
+    }
+    durations.into_iter().map(median).collect()
+}
+
+fn median(mut durations: Vec<Duration>) -> Duration {
+    durations.sort_unstable();
+    durations[durations.len() / 2]
+}

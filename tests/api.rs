@@ -1,0 +1,190 @@
+//! The public face as a user meets it: what compiles, what is lazy, what the counters mean.
+
+use bvhkit::heuristic::{BinnedSah, Heuristic, Median, SweepSah};
+use bvhkit::{
+    Aabb, Barycentrics, Builder, Bvh, Counters, Hits, Intersect, Primitive, Quality, Ray, Recorder, Sphere,
+    Triangle, TriangleMesh,
+};
+use glam::{DVec3, Vec3};
+
+/// Spheres of radius 0.4 at x = 0, 1, 2, ...
+fn row(n: usize) -> Vec<Sphere> {
+    (0..n).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)).collect()
+}
+
+fn along_the_row() -> Ray {
+    Ray::new([-5.0, 0.0, 0.0], [1.0, 0.0, 0.0])
+}
+
+#[test]
+fn points_are_arrays_or_the_users_own_vectors() {
+    let arrays = Triangle::new([0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+    assert_eq!(Triangle::new(Vec3::ZERO, Vec3::X, Vec3::Y), arrays);
+    assert_eq!(Ray::new(Vec3::X, Vec3::Y), Ray::new([1.0f32, 0.0, 0.0], [0.0, 1.0, 0.0]));
+    assert_eq!(Ray::new(DVec3::X, DVec3::Y).origin, [1.0f64, 0.0, 0.0]);
+    assert_eq!(Sphere::new(Vec3::Z, 1.0).center, [0.0, 0.0, 1.0]);
+    assert_eq!(Aabb::new(Vec3::ZERO, Vec3::ONE), Aabb::new([0.0f32; 3], [1.0; 3]));
+    assert_eq!(Vec3::from(Ray::new(Vec3::X, Vec3::Y).at(2.0)), Vec3::new(1.0, 2.0, 0.0));
+}
+
+#[test]
+fn input_is_anything_that_iterates() {
+    let list = row(10);
+    let ray = along_the_row();
+    let expected = Some((0, 4.6));
+    let answer =
+        |hit: Option<bvhkit::Hit<f32, ()>>| hit.map(|hit| (hit.index, (hit.t * 10.0).round() / 10.0));
+    assert_eq!(answer(Bvh::build(&list).unwrap().closest_hit(&ray)), expected);
+    assert_eq!(answer(Bvh::build(list.iter().copied()).unwrap().closest_hit(&ray)), expected);
+    assert_eq!(
+        answer(Bvh::build(list.iter().copied().filter(|_| true)).unwrap().closest_hit(&ray)),
+        expected
+    );
+    assert_eq!(answer(Bvh::build([list[0], list[5]]).unwrap().closest_hit(&ray)), expected);
+    assert_eq!(answer(Bvh::build(list).unwrap().closest_hit(&ray)), expected);
+
+    let vertices = [[0.0f32, -1.0, -1.0], [0.0, 1.0, -1.0], [0.0, 0.0, 1.0]];
+    let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2]]).unwrap();
+    assert_eq!(Bvh::build(&mesh).unwrap().closest_hit(&ray).unwrap().t, 5.0);
+}
+
+#[test]
+fn unlike_primitives_behind_one_pointer() {
+    type Surface = dyn Intersect<Scalar = f32, Payload = ()> + Send + Sync;
+    let scene: Vec<Box<Surface>> =
+        vec![Box::new(Aabb::new([1.0f32, -1.0, -1.0], [2.0, 1.0, 1.0])), Box::new(row(1)[0])];
+    let bvh = Bvh::build(scene).unwrap();
+    assert!(bvh.hits(&along_the_row()).map(|hit| hit.index).eq([1, 0]));
+    let borrowed = Bvh::build(bvh.primitives().map(|primitive| &**primitive)).unwrap();
+    assert!(borrowed.hits(&along_the_row()).map(|hit| hit.index).eq([1, 0]));
+}
+
+#[test]
+fn a_heuristic_chosen_at_run_time() {
+    let trees = [&Median as &dyn Heuristic<f32>, &BinnedSah::default(), &SweepSah::default(), &Quality::High]
+        .map(|heuristic| Bvh::builder().heuristic(heuristic).build(row(100)).unwrap());
+    assert!(trees.iter().all(|bvh| bvh.any_hit(&along_the_row())));
+    assert!(trees[0].tree() != trees[2].tree(), "the choice makes a difference");
+    let direct = Bvh::builder().heuristic(Median).build(row(100)).unwrap();
+    assert!(trees[0].tree() == direct.tree(), "and how it is passed does not");
+}
+
+#[test]
+fn the_last_choice_of_a_heuristic_counts() {
+    let by_preset = Bvh::builder().quality(Quality::High).build(row(100)).unwrap();
+    let by_name = Bvh::builder().heuristic(Median).heuristic(SweepSah::default()).build(row(100)).unwrap();
+    let again = Bvh::builder().heuristic(Median).quality(Quality::High).build(row(100)).unwrap();
+    assert!(by_preset.tree() == by_name.tree() && by_preset.tree() == again.tree());
+}
+
+#[test]
+fn trees_and_what_comes_of_them_cross_threads() {
+    fn crosses<T: Send + Sync>() {}
+    crosses::<Bvh<Triangle>>();
+    crosses::<Bvh<&Sphere<f64>>>();
+    crosses::<Builder<Triangle>>();
+    crosses::<Hits<'_, Triangle>>();
+
+    let bvh = Bvh::build(row(100)).unwrap();
+    let answers = std::thread::scope(|scope| {
+        let threads = [0; 4].map(|_| scope.spawn(|| bvh.closest_hit(&along_the_row())));
+        threads.map(|thread| thread.join().unwrap())
+    });
+    assert!(answers.iter().all(|&answer| answer == bvh.closest_hit(&along_the_row())));
+}
+
+/// Owned, and nothing else: not `Clone`, not `Debug`, with no size known at compile time inside.
+struct Named {
+    name: String,
+    place: [f32; 3],
+}
+
+impl Primitive for Named {
+    type Scalar = f32;
+    fn aabb(&self) -> Aabb {
+        Aabb::new(self.place, self.place)
+    }
+}
+
+#[test]
+fn primitives_come_back_in_the_order_of_the_input() {
+    let named = |i: usize| Named { name: i.to_string(), place: [(i * 37 % 101) as f32, 0.0, 0.0] };
+    // No rays: a box is all it takes to be in a tree.
+    let bvh = Bvh::builder().max_leaf_size(1).build((0..101).map(named)).unwrap();
+    assert!(bvh.primitives().map(|primitive| primitive.name.clone()).eq((0..101).map(|i| i.to_string())));
+    assert_eq!(bvh.primitives().len(), 101);
+    for i in 0..101 {
+        assert_eq!(bvh.primitive(i).name, i.to_string());
+        assert_eq!(bvh.get(i).map(|primitive| &primitive.name), Some(&i.to_string()));
+    }
+    assert!(bvh.get(101).is_none());
+    assert!(bvh.check().is_ok());
+}
+
+#[test]
+fn a_payload_tells_where_on_the_triangle() {
+    let bvh = Bvh::build([Triangle::new([0.0f64; 3], [2.0, 0.0, 0.0], [0.0, 4.0, 0.0])]).unwrap();
+    let hit = bvh.closest_hit(&Ray::new([0.5, 1.0, -1.0], [0.0, 0.0, 1.0])).unwrap();
+    assert_eq!(hit.payload, Barycentrics { u: 0.25, v: 0.25 });
+}
+
+#[test]
+fn hits_are_found_as_they_are_asked_for() {
+    let bvh = Bvh::builder().max_leaf_size(1).build(row(1000)).unwrap();
+    let (mut first, mut all, mut closest) = (Counters::default(), Counters::default(), Counters::default());
+    assert_eq!(bvh.hits_with(&along_the_row(), &mut first).next().unwrap().index, 0);
+    assert_eq!(bvh.hits_with(&along_the_row(), &mut all).count(), 1000);
+    bvh.closest_hit_with(&along_the_row(), &mut closest);
+    assert_eq!((all.primitives, all.leaves, all.nodes), (1000, 1000, 999));
+    assert!(first.nodes < 20 && first.primitives < 4, "{first:?}");
+    assert!(closest.nodes < 20 && closest.primitives < 4, "{closest:?}");
+
+    let mut hits = bvh.hits(&along_the_row());
+    assert_eq!(hits.by_ref().count(), 1000);
+    assert!(hits.next().is_none(), "the end is the end");
+}
+
+#[test]
+fn counters_count_rays_nodes_leaves_and_primitives() {
+    let bvh = Bvh::builder().heuristic(Median).max_leaf_size(2).build(row(4)).unwrap();
+    let mut counters = Counters::default();
+    // Into the first of two leaves; the second begins behind the hit.
+    bvh.closest_hit_with(&along_the_row(), &mut counters);
+    assert_eq!(counters, Counters { rays: 1, nodes: 1, leaves: 1, primitives: 2 });
+    // Past everything: the box around all of it is tested, but no node is visited.
+    bvh.closest_hit_with(&Ray::new([-5.0, 9.0, 0.0], [1.0, 0.0, 0.0]), &mut counters);
+    assert_eq!(counters, Counters { rays: 2, nodes: 1, leaves: 1, primitives: 2 });
+    // Any hit stops within the leaf.
+    let mut any = Counters::default();
+    assert!(bvh.any_hit_with(&along_the_row(), &mut any));
+    assert_eq!(any, Counters { rays: 1, nodes: 1, leaves: 1, primitives: 1 });
+    counters += any;
+    assert_eq!(counters, Counters { rays: 3, nodes: 2, leaves: 2, primitives: 3 });
+}
+
+#[test]
+fn what_lies_outside_the_interval_is_not_visited() {
+    let bvh = Bvh::builder().max_leaf_size(1).build(row(1000)).unwrap();
+    // From the gap between two spheres into that gap: half of the row behind, half of it beyond.
+    let ray = Ray::new([500.5, 0.0, 0.0], [1.0, 0.0, 0.0]).with_interval(0.0, 0.05);
+    let mut counters = Counters::default();
+    assert!(bvh.closest_hit_with(&ray, &mut counters).is_none());
+    assert!(!bvh.any_hit_with(&ray, &mut counters));
+    assert_eq!(bvh.hits_with(&ray, &mut counters).count(), 0);
+    assert!(counters.primitives == 0 && counters.nodes <= 3 * 20, "{counters:?}");
+}
+
+#[test]
+fn a_recorder_of_ones_own() {
+    #[derive(Default)]
+    struct Leaves(usize);
+    impl Recorder for Leaves {
+        fn leaf(&mut self) {
+            self.0 += 1;
+        }
+    }
+    let mut leaves = Leaves::default();
+    let bvh = Bvh::builder().max_leaf_size(1).build(row(8)).unwrap();
+    bvh.hits_with(&along_the_row(), &mut leaves).for_each(drop);
+    assert_eq!(leaves.0, 8);
+}

@@ -1,0 +1,21 @@
+//! The heuristics that every test of agreement runs through, one of them hostile.
+
+use super::hostile::Hostile;
+use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, SahCost, SweepSah};
+use bvhkit::{Quality, Scalar};
+
+/// Every heuristic of the crate and [`Hostile`], with a name for messages.
+pub fn all<S: Scalar>() -> Vec<(&'static str, Box<dyn Heuristic<S>>)> {
+    // A dear step and a cheap test: leaves as large as they may be.
+    let lazy = SahCost { traversal: 100.0, intersection: 0.1 };
+    vec![
+        ("median", Box::new(Median)),
+        ("midpoint", Box::new(Midpoint)),
+        ("2 bins", Box::new(BinnedSah::new(2))),
+        ("7 bins", Box::new(BinnedSah { bins: 7, cost: lazy })),
+        ("64 bins", Box::new(BinnedSah::new(64))),
+        ("sweep", Box::new(SweepSah::default())),
+        ("fast", Box::new(Quality::Fast)),
+        ("hostile", Box::new(Hostile)),
+    ]
+}

@@ -1,0 +1,112 @@
+//! Strategies for rays that go where rounding decides: corners, edges, faces of boxes, surfaces.
+
+use super::primitives::Corners;
+use super::scenes::scalar_from_bits;
+use bvhkit::{Ray, Scalar};
+use proptest::prelude::*;
+use proptest::sample::Index;
+
+/// How to make a ray out of a soup, whose primitives it picks by index.
+#[derive(Clone, Debug)]
+pub struct Aim {
+    from: Place,
+    toward: Toward,
+    interval: Interval,
+}
+
+/// A point of some primitive: a corner, on an edge, inside; or pushed off it by its own size.
+#[derive(Clone, Debug)]
+struct Place {
+    primitive: Index,
+    weights: [f64; 3],
+}
+
+#[derive(Clone, Debug)]
+enum Toward {
+    /// From the origin to a place, which is at t = 1.
+    Place(Place),
+    /// Along an axis, forward or back, with zeros of either sign: from a corner, in the planes of
+    /// that corner's box.
+    Axis { axis: usize, length: f64, zeros: [bool; 3] },
+    /// Any bits.
+    Bits([u64; 3]),
+    /// Nowhere: an invalid ray.
+    Zero,
+}
+
+#[derive(Clone, Debug)]
+enum Interval {
+    Whole,
+    From(f64),
+    Between(f64, f64),
+    Line,
+}
+
+pub fn aims() -> impl Strategy<Value = Vec<Aim>> {
+    let interval = prop_oneof![
+        4 => Just(Interval::Whole),
+        1 => (0.0..2.0).prop_map(Interval::From),
+        // Backward, forward, empty, a single point.
+        2 => (-2.0..2.0, 0.0..3.0).prop_map(|(t_min, t_max)| Interval::Between(t_min, t_max)),
+        1 => prop::sample::select(vec![0.0, 1.0]).prop_map(|t| Interval::Between(t, t)),
+        1 => Just(Interval::Line),
+    ];
+    let toward = prop_oneof![
+        8 => place().prop_map(Toward::Place),
+        8 => (0..3usize, prop::sample::select(vec![1.0, -1.0, 0.3, -7.0]), any::<[bool; 3]>())
+            .prop_map(|(axis, length, zeros)| Toward::Axis { axis, length, zeros }),
+        1 => any::<[u64; 3]>().prop_map(Toward::Bits),
+        1 => Just(Toward::Zero),
+    ];
+    let aim = (place(), toward, interval).prop_map(|(from, toward, interval)| Aim { from, toward, interval });
+    prop::collection::vec(aim, 1..16)
+}
+
+fn place() -> impl Strategy<Value = Place> {
+    let corner = prop::sample::select(vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    let edge = (0.0..1.0).prop_map(|w| [w, 1.0 - w, 0.0]);
+    let inside = (0.0..1.0, 0.0..1.0).prop_map(|(v, w)| [1.0 - w, w * (1.0 - v), w * v]);
+    // Weights that do not sum to 1 leave the plane, too.
+    let beside = [-4.0..4.0, -4.0..4.0, -4.0..4.0];
+    let weights = prop_oneof![corner, edge, inside, beside];
+    (any::<Index>(), weights).prop_map(|(primitive, weights)| Place { primitive, weights })
+}
+
+impl Place {
+    fn point<S: Scalar>(&self, soup: &[Corners<S>]) -> [S; 3] {
+        let fallback = [[S::ZERO; 3]; 3];
+        let corners = if soup.is_empty() { &fallback } else { self.primitive.get(soup) };
+        // A corner itself must come out exactly, a negative zero and all.
+        if let Some(corner) = self.weights.iter().position(|&w| w == 1.0) {
+            return corners[corner];
+        }
+        let weighted = |corner: usize, axis: usize| corners[corner][axis] * S::from_f64(self.weights[corner]);
+        [0, 1, 2].map(|axis| weighted(0, axis) + weighted(1, axis) + weighted(2, axis))
+    }
+}
+
+impl Aim {
+    pub fn ray<S: Scalar>(&self, soup: &[Corners<S>]) -> Ray<S> {
+        let origin = self.from.point(soup);
+        let direction = match &self.toward {
+            Toward::Place(place) => {
+                let target = place.point(soup);
+                [0, 1, 2].map(|axis| target[axis] - origin[axis])
+            }
+            Toward::Axis { axis, length, zeros } => {
+                let mut direction = zeros.map(|negative| if negative { -S::ZERO } else { S::ZERO });
+                direction[*axis] = S::from_f64(*length);
+                direction
+            }
+            Toward::Bits(bits) => bits.map(scalar_from_bits),
+            Toward::Zero => [S::ZERO, -S::ZERO, S::ZERO],
+        };
+        let (t_min, t_max) = match self.interval {
+            Interval::Whole => (S::ZERO, S::INFINITY),
+            Interval::From(t_min) => (S::from_f64(t_min), S::INFINITY),
+            Interval::Between(t_min, t_max) => (S::from_f64(t_min), S::from_f64(t_max)),
+            Interval::Line => (S::NEG_INFINITY, S::INFINITY),
+        };
+        Ray::new(origin, direction).with_interval(t_min, t_max)
+    }
+}

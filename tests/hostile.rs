@@ -1,0 +1,211 @@
+//! Builds that a careless driver would not survive: hostile heuristics, equal primitives, too many.
+
+mod common {
+    pub mod heuristics;
+    pub mod hostile;
+}
+
+use bvhkit::heuristic::{BinnedSah, BuildNode, Heuristic, Median, Midpoint, Split, SweepSah};
+use bvhkit::{
+    Aabb, Axis, BuildError, Bvh, Intersect, MAX_DEPTH, Primitive, Quality, Ray, Scalar, Sphere, reference,
+};
+use common::heuristics;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Concentric or, if all are equally large, identical.
+fn concentric(n: usize, radius: impl Fn(usize) -> f32) -> Vec<Sphere> {
+    (0..n).map(|i| Sphere::new([1.0, 2.0, 3.0], radius(i))).collect()
+}
+
+/// Counts the references that a heuristic is shown: the work of the build, whatever the machine.
+struct Counted<'a, H> {
+    heuristic: H,
+    references: &'a AtomicU64,
+}
+
+impl<H: Heuristic<f32>> Heuristic<f32> for Counted<'_, H> {
+    fn split(&self, node: &BuildNode<'_>) -> Split {
+        self.references.fetch_add(node.references.len() as u64, Ordering::Relaxed);
+        self.heuristic.split(node)
+    }
+}
+
+/// Builds over `n` spheres with one centroid, asks for the closest hit, and returns the work.
+fn work(n: usize, heuristic: impl Heuristic<f32>, radius: impl Fn(usize) -> f32) -> u64 {
+    let spheres = concentric(n, radius);
+    let references = AtomicU64::new(0);
+    let counted = Counted { heuristic, references: &references };
+    let bvh = Bvh::builder().heuristic(counted).build(&spheres).unwrap();
+    bvh.check().unwrap();
+    assert!(bvh.report().max_depth <= MAX_DEPTH);
+    // From the outside the largest is hit first; of equals, the first.
+    let ray = Ray::new([1.0, 2.0, -20.0], [0.0, 0.0, 1.0]);
+    assert_eq!(bvh.closest_hit(&ray), reference::closest_hit(&spheres, &ray));
+    drop(bvh);
+    references.into_inner()
+}
+
+/// Four times as many primitives take little more than four times the work.
+fn assert_n_log_n(n: usize, heuristic: impl Heuristic<f32> + Copy) {
+    let radii: [fn(usize) -> f32; 2] = [|_| 1.0, |i| 1.0 + (i % 1000) as f32 * 0.001];
+    for radius in radii {
+        let [small, large] = [n / 4, n].map(|n| work(n, heuristic, radius));
+        assert!(large < 5 * small, "{small} references for {}, {large} for {n}", n / 4);
+    }
+}
+
+#[test]
+fn a_million_equal_primitives_or_centroids() {
+    assert_n_log_n(1_000_000, Median);
+    assert_n_log_n(1_000_000, Midpoint);
+    assert_n_log_n(1_000_000, BinnedSah::default());
+    assert_n_log_n(100_000, SweepSah::default());
+}
+
+#[test]
+fn of_equal_primitives_the_first_is_hit() {
+    let spheres = concentric(1000, |_| 1.0);
+    let ray = Ray::new([1.0, 2.0, -20.0], [0.0, 0.0, 1.0]);
+    for (name, heuristic) in heuristics::all() {
+        let bvh = Bvh::builder().heuristic(&*heuristic).build(&spheres).unwrap();
+        assert_eq!(bvh.closest_hit(&ray).unwrap().index, 0, "{name}");
+        assert!(bvh.hits(&ray).map(|hit| hit.index).eq(0..1000), "{name}");
+    }
+}
+
+/// Proposes the same at every node, as a function of the number of primitives.
+#[derive(Clone, Copy)]
+struct Stubborn(fn(usize) -> Split);
+
+impl Heuristic<f32> for Stubborn {
+    fn split(&self, node: &BuildNode<'_>) -> Split {
+        (self.0)(node.references.len())
+    }
+}
+
+const AXIS: Axis = Axis::X;
+
+const STUBBORN: [(&str, Stubborn); 9] = [
+    ("0 of n", Stubborn(|_| Split::Count { axis: AXIS, left: 0 })),
+    ("n of n", Stubborn(|n| Split::Count { axis: AXIS, left: n })),
+    ("too many of n", Stubborn(|_| Split::Count { axis: AXIS, left: usize::MAX })),
+    ("1 of n", Stubborn(|_| Split::Count { axis: AXIS, left: 1 })),
+    ("n - 1 of n", Stubborn(|n| Split::Count { axis: AXIS, left: n - 1 })),
+    ("NaN", Stubborn(|_| Split::Plane { axis: AXIS, position: f32::NAN })),
+    ("infinity", Stubborn(|_| Split::Plane { axis: AXIS, position: f32::INFINITY })),
+    ("-infinity", Stubborn(|_| Split::Plane { axis: AXIS, position: f32::NEG_INFINITY })),
+    ("always a leaf", Stubborn(|_| Split::Leaf)),
+];
+
+/// Runs `f` where a recursion as deep as a bad tree would overflow.
+fn on_a_small_stack(f: impl FnOnce() + Send) {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(64 * 1024).spawn_scoped(scope, f).unwrap();
+        thread.join().unwrap();
+    });
+}
+
+/// `n` spheres in a row, each met by the same ray.
+fn row<S: Scalar>(n: usize) -> (Vec<Sphere<S>>, Ray<S>) {
+    let x = |i: usize| S::from_f64((i * 7 % n) as f64);
+    let spheres = (0..n).map(|i| Sphere::new([x(i), S::ZERO, S::ZERO], S::HALF)).collect();
+    (spheres, Ray::new([-S::ONE, S::ZERO, S::ZERO], [S::ONE, S::ZERO, S::ZERO]))
+}
+
+fn build_and_ask<S: Scalar>(n: usize, name: &str, heuristic: &dyn Heuristic<S>) {
+    let (spheres, ray) = row::<S>(n);
+    let bvh = Bvh::builder().heuristic(heuristic).max_leaf_size(1).build(&spheres).unwrap();
+    bvh.check().unwrap();
+    assert!(bvh.report().max_depth <= MAX_DEPTH, "{name}");
+    assert_eq!(bvh.closest_hit(&ray).unwrap().index, 0, "{name}");
+    assert!(bvh.any_hit(&ray), "{name}");
+    assert_eq!(bvh.hits(&ray).count(), n, "{name}");
+}
+
+#[test]
+fn hostile_heuristics_keep_the_depth_bound_on_a_small_stack() {
+    // Few enough to be built on this very thread, and more than a hundred times the depth bound.
+    on_a_small_stack(|| STUBBORN.iter().for_each(|(name, stubborn)| build_and_ask(4001, name, stubborn)));
+    on_a_small_stack(|| {
+        heuristics::all().iter().for_each(|(name, h)| build_and_ask::<f32>(4001, name, &**h))
+    });
+    on_a_small_stack(|| {
+        heuristics::all().iter().for_each(|(name, h)| build_and_ask::<f64>(4001, name, &**h))
+    });
+}
+
+#[test]
+fn hostile_heuristics_over_many_tasks() {
+    for (name, stubborn) in &STUBBORN {
+        build_and_ask(20_011, name, stubborn);
+    }
+}
+
+#[test]
+fn a_bad_split_is_replaced_by_halves_and_a_poor_one_is_taken() {
+    for (name, stubborn) in STUBBORN {
+        let bvh = Bvh::builder().heuristic(stubborn).max_leaf_size(1).build(row(1024).0).unwrap();
+        let expected = if name.starts_with('1') || name.starts_with("n - 1") { MAX_DEPTH } else { 10 };
+        assert_eq!(bvh.report().max_depth, expected, "{name}");
+    }
+}
+
+#[test]
+fn a_leaf_size_of_zero_is_an_error_and_a_huge_one_a_single_leaf() {
+    let zero = Bvh::builder().max_leaf_size(0).build([Sphere::new([0.0f32; 3], 1.0)]);
+    assert_eq!(zero.unwrap_err(), BuildError::ZeroLeafSize);
+    for size in [10_000, usize::MAX] {
+        let bvh = Bvh::builder().heuristic(Median).max_leaf_size(size).build(row::<f32>(10_000).0).unwrap();
+        assert_eq!((bvh.report().leaves, bvh.report().max_depth), (1, 0));
+        assert_eq!(bvh.hits(&row(10_000).1).count(), 10_000);
+    }
+}
+
+/// A primitive of no size, so that four billion of them fit.
+#[derive(Clone, Copy, Debug)]
+struct Nothing;
+
+impl Primitive for Nothing {
+    type Scalar = f32;
+    fn aabb(&self) -> Aabb {
+        panic!("no box is asked for before the number is known")
+    }
+}
+
+#[test]
+#[cfg(target_pointer_width = "64")]
+fn more_primitives_than_indices() {
+    let count = 1 << 32;
+    for count in [count, count + 1, usize::MAX] {
+        let error = Bvh::build(std::iter::repeat_n(Nothing, count)).unwrap_err();
+        assert_eq!(error, BuildError::TooManyPrimitives { count });
+        // These would take more memory than there is, were any allocated.
+        let big = std::iter::repeat_n(Sphere::new([0.0f32; 3], 1.0), count);
+        let error = Bvh::builder().quality(Quality::High).build(big).unwrap_err();
+        assert_eq!(error, BuildError::TooManyPrimitives { count });
+    }
+}
+
+#[test]
+fn an_intersection_that_answers_nonsense_is_no_hit() {
+    struct Liar(f32);
+    impl Primitive for Liar {
+        type Scalar = f32;
+        fn aabb(&self) -> Aabb {
+            Aabb::new([-1.0; 3], [1.0; 3])
+        }
+    }
+    impl Intersect for Liar {
+        type Payload = ();
+        fn intersect(&self, _: &Ray) -> Option<(f32, ())> {
+            Some((self.0, ()))
+        }
+    }
+    let ray = Ray::new([0.0f32, 0.0, -3.0], [0.0, 0.0, 1.0]).with_interval(2.5, 9.0);
+    // Before the box, which is entered at 2: raised, not lost.
+    let early = Bvh::build([Liar(1.0)]).unwrap().closest_hit(&ray.with_interval(0.0, 9.0));
+    assert!(early.is_some_and(|hit| (hit.t - 2.0).abs() < 1e-5));
+    for (t, hit) in [(f32::NAN, false), (9.5, false), (f32::INFINITY, false), (2.0, false), (8.0, true)] {
+        assert_eq!(Bvh::build([Liar(t)]).unwrap().any_hit(&ray), hit, "{t}");
+    }
+}

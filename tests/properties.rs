@@ -1,0 +1,113 @@
+//! Every heuristic, leaf size, kind of primitive and scalar against the naive loop.
+//!
+//! `PROPTEST_CASES` sets the number of scenes for each property.
+
+mod common {
+    pub mod agreement;
+    pub mod answers;
+    pub mod heuristics;
+    pub mod hostile;
+}
+mod generate {
+    pub mod primitives;
+    pub mod rays;
+    pub mod scenes;
+}
+
+use bvhkit::{Intersect, Ray, Scalar, Triangle, TriangleMesh, reference};
+use common::agreement::assert_agreement;
+use common::answers::Payload;
+use generate::primitives::{Corners, boxes, discs, spheres, triangles};
+use generate::rays::{Aim, aims};
+use generate::scenes::soup;
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+
+/// The rays as aimed, and again with intervals that begin, end, or begin and end at their hits.
+fn rays<S: Scalar, P: Intersect<Scalar = S>>(
+    soup: &[Corners<S>],
+    aims: &[Aim],
+    primitives: &[P],
+) -> Vec<Ray<S>> {
+    let mut rays: Vec<_> = aims.iter().map(|aim| aim.ray(soup)).collect();
+    for i in 0..rays.len() {
+        let ray = rays[i];
+        if let Some(hit) = reference::closest_hit(primitives, &ray) {
+            let intervals = [(hit.t, hit.t), (ray.t_min, hit.t), (hit.t, ray.t_max)];
+            rays.extend(intervals.map(|(t_min, t_max)| ray.with_interval(t_min, t_max)));
+        }
+    }
+    rays
+}
+
+fn check<S: Scalar, P: Intersect<Scalar = S, Payload: Payload>>(
+    soup: &[Corners<S>],
+    aims: &[Aim],
+    primitives: &[P],
+) -> usize {
+    assert_agreement(primitives, &rays(soup, aims, primitives))
+}
+
+/// The same triangles through an index buffer, wound the other way.
+fn check_mesh<S: Scalar>(soup: &[Corners<S>], aims: &[Aim]) -> usize {
+    let faces: Vec<_> = (0..soup.len() as u32).map(|i| [3 * i + 2, 3 * i + 1, 3 * i]).collect();
+    let mesh = TriangleMesh::new(soup.as_flattened(), &faces).unwrap();
+    check(soup, aims, &mesh.iter().collect::<Vec<_>>())
+}
+
+/// Through two pointers, as a scene of unlike primitives would be.
+fn check_boxed<S: Scalar>(soup: &[Corners<S>], aims: &[Aim]) -> usize {
+    type Dyn<'a, S> = dyn Intersect<Scalar = S, Payload = bvhkit::Barycentrics<S>> + 'a;
+    let owned = triangles(soup);
+    let boxed: Vec<Box<Dyn<'_, S>>> =
+        owned.iter().map(|triangle: &Triangle<S>| Box::new(triangle) as Box<Dyn<'_, S>>).collect();
+    check(soup, aims, &boxed)
+}
+
+/// A property for each scalar and kind of primitive.
+macro_rules! properties {
+    ($($name:ident: $scalar:ty, $check:expr;)*) => {
+        proptest! {
+            #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+            $(
+                #[test]
+                fn $name(soup in soup::<$scalar>(), aims in aims()) {
+                    let check: fn(&[Corners<$scalar>], &[Aim]) -> usize = $check;
+                    check(&soup, &aims);
+                }
+            )*
+        }
+    };
+}
+
+properties! {
+    triangles_f32: f32, |soup, aims| check(soup, aims, &triangles(soup));
+    triangles_f64: f64, |soup, aims| check(soup, aims, &triangles(soup));
+    mesh_triangles_f32: f32, check_mesh;
+    mesh_triangles_f64: f64, check_mesh;
+    spheres_f32: f32, |soup, aims| check(soup, aims, &spheres(soup));
+    spheres_f64: f64, |soup, aims| check(soup, aims, &spheres(soup));
+    boxes_f32: f32, |soup, aims| check(soup, aims, &boxes(soup));
+    boxes_f64: f64, |soup, aims| check(soup, aims, &boxes(soup));
+    sloppy_discs_f32: f32, |soup, aims| check(soup, aims, &discs(soup));
+    sloppy_discs_f64: f64, |soup, aims| check(soup, aims, &discs(soup));
+    boxed_references_f32: f32, check_boxed;
+    boxed_references_f64: f64, check_boxed;
+}
+
+/// Rays that miss prove little.
+#[test]
+fn the_aims_are_good() {
+    let mut runner = TestRunner::deterministic();
+    let mut hits = [0; 4];
+    for _ in 0..50 {
+        let soup = soup::<f32>().new_tree(&mut runner).unwrap().current();
+        let aims = aims().new_tree(&mut runner).unwrap().current();
+        hits[0] += check(&soup, &aims, &triangles(&soup));
+        hits[1] += check(&soup, &aims, &spheres(&soup));
+        hits[2] += check(&soup, &aims, &boxes(&soup));
+        hits[3] += check(&soup, &aims, &discs(&soup));
+    }
+    assert!(hits.iter().all(|&hits| hits > 300), "{hits:?}");
+}

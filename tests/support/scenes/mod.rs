@@ -1,0 +1,42 @@
+//! Scenes made of nothing but a number of triangles: the same on every run and every machine.
+
+mod interior;
+mod soup;
+mod surface;
+
+use bvhkit::{Aabb, Primitive, Triangle};
+use glam::Vec3;
+
+/// A scene, and from where to look at it.
+pub struct NamedScene {
+    pub name: String,
+    pub triangles: Vec<Triangle>,
+    pub eye: Vec3,
+    pub target: Vec3,
+}
+
+/// One scene of each kind, each of about `n` triangles.
+pub fn all(n: usize) -> Vec<NamedScene> {
+    let outside = Vec3::new(0.6, 0.5, 0.9);
+    [
+        ("closed-mesh", surface::closed_mesh(n), 2.2 * outside, Vec3::ZERO),
+        ("terrain", surface::terrain(n), Vec3::new(0.9, 0.25, 0.8), Vec3::ZERO),
+        ("interior", interior::interior(n), Vec3::new(8.5, 1.6, 7.0), Vec3::new(3.0, 2.0, 2.0)),
+        ("clustered-soup", soup::clustered(n), 1.5 * outside, Vec3::splat(0.5)),
+        ("scattered-soup", soup::scattered(n), 1.5 * outside, Vec3::splat(0.5)),
+    ]
+    .map(|(name, triangles, eye, target)| NamedScene { name: name.into(), triangles, eye, target })
+    .into()
+}
+
+impl NamedScene {
+    /// The box around all triangles.
+    pub fn aabb(&self) -> Aabb {
+        self.triangles.iter().fold(Aabb::EMPTY, |aabb, triangle| aabb.union(triangle.aabb()))
+    }
+}
+
+/// The two triangles of a quadrilateral whose corners are given in turn.
+fn quad([a, b, c, d]: [Vec3; 4]) -> [Triangle; 2] {
+    [Triangle::new(a, b, c), Triangle::new(a, c, d)]
+}
