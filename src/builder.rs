@@ -1,7 +1,7 @@
 //! The options of a build, and what may be wrong with its input.
 
 use crate::build::heuristic::{BinnedSah, BuildNode, Heuristic, Split};
-use crate::build::{PrimRef, ThreadPoolError, build_tree, in_pool};
+use crate::build::{Flaw, PrimRef, ThreadPoolError, build_tree, in_pool};
 use crate::bvh::Bvh;
 use crate::geometry::Scalar;
 use crate::primitive::Primitive;
@@ -72,19 +72,6 @@ pub enum BuildError {
     ZeroLeafSize,
     /// The threads asked for could not be had.
     ThreadPool(ThreadPoolError),
-}
-
-/// What is wrong with a primitive.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Flaw {
-    /// A bound of its box is NaN.
-    NanBox,
-    /// A bound of its box is infinite.
-    InfiniteBox,
-    /// Its box has a minimum above its maximum.
-    InvertedBox,
-    /// Its centroid has a NaN or an infinity.
-    Centroid,
 }
 
 impl fmt::Display for BuildError {
@@ -221,8 +208,8 @@ impl<P: Primitive, H: Heuristic<P::Scalar>> Builder<P, H> {
     fn references(&self, primitives: &[P]) -> Result<References<P::Scalar>, BuildError> {
         let (mut valid, mut skipped) = (Vec::with_capacity(primitives.len()), Vec::new());
         for (index, primitive) in (0..).zip(primitives) {
-            let reference = PrimRef { aabb: primitive.aabb(), centroid: primitive.centroid(), index };
-            match (flaw(&reference), self.on_invalid) {
+            let reference = PrimRef::new(primitive, index);
+            match (reference.flaw(), self.on_invalid) {
                 (None, _) => valid.push(reference),
                 (Some(_), OnInvalid::Skip) => skipped.push(index),
                 (Some(flaw), OnInvalid::Reject) => {
@@ -248,21 +235,4 @@ fn collect<P>(primitives: impl Iterator<Item = P>) -> Result<Vec<P>, BuildError>
     let collected: Vec<P> = primitives.take(limit.saturating_add(1)).collect();
     check(collected.len())?;
     Ok(collected)
-}
-
-fn flaw<S: Scalar>(reference: &PrimRef<S>) -> Option<Flaw> {
-    let PrimRef { aabb, centroid, .. } = reference;
-    if aabb.is_valid() && centroid.iter().all(|x| x.is_finite()) {
-        return None;
-    }
-    let bounds = || aabb.min.iter().chain(&aabb.max);
-    Some(if bounds().any(|x| x.is_nan()) {
-        Flaw::NanBox
-    } else if aabb.is_valid() {
-        Flaw::Centroid
-    } else if bounds().all(|x| x.is_finite()) || aabb.is_empty() {
-        Flaw::InvertedBox
-    } else {
-        Flaw::InfiniteBox
-    })
 }

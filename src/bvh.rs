@@ -7,6 +7,7 @@ use crate::primitive::{Intersect, Primitive};
 use crate::query::{Hit, Hits, Recorder, Scene, any_hit, closest_hit};
 use crate::tree::{InvariantError, Tree, TreeReport};
 use alloc::vec::Vec;
+use core::fmt;
 
 /// A bounding volume hierarchy over primitives of type `P`, owned (`Bvh<Sphere>`) or borrowed
 /// (`Bvh<&Sphere>`).
@@ -33,7 +34,7 @@ use alloc::vec::Vec;
 /// assert_eq!(bvh.hits(&ray).map(|hit| hit.index).take(3).collect::<Vec<_>>(), [500, 501, 502]);
 /// # Ok::<(), bvhkit::BuildError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Bvh<P: Primitive> {
     tree: Tree<P::Scalar>,
     /// In the order of the tree's slots, for locality; skipped ones last.
@@ -143,6 +144,13 @@ impl<P: Primitive> Bvh<P> {
     /// has changed since.
     pub fn check(&self) -> Result<(), InvariantError> {
         self.tree.check(|slot| self.primitives[slot].aabb())
+    }
+}
+
+impl<P: Primitive> fmt::Debug for Bvh<P> {
+    /// The tree's report; nothing is asked of the primitives.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Bvh").field("report", &self.report()).finish_non_exhaustive()
     }
 }
 

@@ -74,8 +74,8 @@ mod tree;
 struct Readme;
 
 pub use build::heuristic;
-pub use build::{PrimRef, ThreadPoolError};
-pub use builder::{BuildError, Builder, Flaw, OnInvalid, Quality};
+pub use build::{Flaw, PrimRef, ThreadPoolError};
+pub use builder::{BuildError, Builder, OnInvalid, Quality};
 pub use bvh::Bvh;
 pub use geometry::{Aabb, Axis, Ray, RayError, Scalar};
 pub use primitive::{

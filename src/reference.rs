@@ -5,8 +5,8 @@
 //! of [`Bvh`](crate::Bvh) (see [`Intersect::intersect`]), and answer by the smallest (t, index), so
 //! a tree of this crate gives the same t, bit for bit, and the same index.
 //!
-//! A primitive with an invalid box (a bound that is NaN or infinite, or a minimum above its
-//! maximum) is not hit, as in a tree that was told to skip such.
+//! An invalid primitive (see [`Flaw`](crate::Flaw)) is not hit, as in a tree that was told to skip
+//! such.
 //!
 //! ```
 //! use bvhkit::{Bvh, Ray, Sphere, reference};
@@ -18,6 +18,7 @@
 //! # Ok::<(), bvhkit::BuildError>(())
 //! ```
 
+use crate::build::PrimRef;
 use crate::geometry::{Ray, Slabs};
 use crate::primitive::Intersect;
 use crate::query::{Hit, HitOf, Recorder, accept, precedes};
@@ -80,6 +81,6 @@ fn all<'a, P: Intersect>(
     asked.iter().enumerate().filter_map(move |(index, primitive)| {
         recorder.primitive();
         let (t, payload) = accept(primitive, ray, &slabs, ray.t_max)?;
-        primitive.aabb().is_valid().then_some(Hit { t, index, payload })
+        PrimRef::new(primitive, 0).flaw().is_none().then_some(Hit { t, index, payload })
     })
 }

@@ -16,4 +16,4 @@ mod reference;
 pub(crate) use driver::build_tree;
 pub use parallel::ThreadPoolError;
 pub(crate) use parallel::in_pool;
-pub use reference::PrimRef;
+pub use reference::{Flaw, PrimRef};

@@ -1,6 +1,7 @@
 //! What builders sort instead of primitives.
 
 use crate::geometry::{Aabb, Scalar};
+use crate::primitive::Primitive;
 
 /// A reference to a primitive: its box, its centroid, its index. All that heuristics see of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +12,42 @@ pub struct PrimRef<S = f32> {
     pub centroid: [S; 3],
     /// The primitive's index in the input.
     pub index: u32,
+}
+
+/// What is wrong with a primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flaw {
+    /// A bound of its box is NaN.
+    NanBox,
+    /// A bound of its box is infinite.
+    InfiniteBox,
+    /// Its box has a minimum above its maximum.
+    InvertedBox,
+    /// Its centroid has a NaN or an infinity.
+    Centroid,
+}
+
+impl<S: Scalar> PrimRef<S> {
+    /// The reference to a primitive.
+    pub(crate) fn new<P: Primitive<Scalar = S>>(primitive: &P, index: u32) -> Self {
+        Self { aabb: primitive.aabb(), centroid: primitive.centroid(), index }
+    }
+
+    /// What makes the primitive invalid, if anything does.
+    pub(crate) fn flaw(&self) -> Option<Flaw> {
+        let Self { aabb, centroid, .. } = self;
+        if aabb.is_valid() {
+            return if centroid.iter().all(|x| x.is_finite()) { None } else { Some(Flaw::Centroid) };
+        }
+        let bounds = || aabb.min.iter().chain(&aabb.max);
+        Some(if bounds().any(|x| x.is_nan()) {
+            Flaw::NanBox
+        } else if aabb.is_empty() {
+            Flaw::InvertedBox
+        } else {
+            Flaw::InfiniteBox
+        })
+    }
 }
 
 /// The box around a set of references, and the box around their centroids.

@@ -13,9 +13,10 @@ use super::{Aabb, Ray, Scalar, max, min};
 /// ```
 ///
 /// `inv_near` and `inv_far` are 1 / direction, made smaller and larger by 3 epsilon: each side of
-/// the test makes at most four roundings of half an epsilon, so that for planes ahead of the origin
-/// the interval contains the exact one (Ize 2013, who widens the far side alone; both are needed
-/// where a hit is compared with `near`).
+/// the test makes at most four roundings of half an epsilon, so that the interval contains the
+/// exact one (Ize 2013, who widens the far side alone; both are needed where a hit is compared with
+/// `near`). Behind the origin, at negative t, the two change places, which only rays with a
+/// negative `t_min` have to mind: the others never look there.
 ///
 /// On an axis with direction +0 or -0 the inverse is infinite: a plane strictly on one side gives
 /// an infinity of the right sign, and a plane through the origin 0 * infinity = NaN, which the
@@ -50,16 +51,28 @@ impl<S: Scalar> Slabs<S> {
         }
     }
 
+    /// The t at which the ray enters the slab between two planes of an axis, and leaves it.
+    #[inline(always)]
+    pub fn slab(&self, axis: usize, [min, max]: [S; 2]) -> [S; 2] {
+        let negative = self.negative[axis];
+        let (first, last) = if negative { (max, min) } else { (min, max) };
+        let at = |plane: S, ahead: S, behind: S| {
+            let distance = plane - self.origin[axis];
+            distance * if (distance < S::ZERO) == negative { ahead } else { behind }
+        };
+        let (inv_near, inv_far) = (self.inv_near[axis], self.inv_far[axis]);
+        [at(first, inv_near, inv_far), at(last, inv_far, inv_near)]
+    }
+
     /// Where the ray enters the box, the interval of the ray left aside, if it meets the box at all
     /// and does not leave it before `t_min`.
     #[inline(always)]
     pub fn entry(&self, aabb: &Aabb<S>) -> Option<S> {
-        let plane = |axis: usize, upper: bool| if upper { aabb.max[axis] } else { aabb.min[axis] };
         let (mut near, mut far) = (S::NEG_INFINITY, S::INFINITY);
         for axis in 0..3 {
-            let negative = self.negative[axis];
-            near = max((plane(axis, negative) - self.origin[axis]) * self.inv_near[axis], near);
-            far = min((plane(axis, !negative) - self.origin[axis]) * self.inv_far[axis], far);
+            let [enters, leaves] = self.slab(axis, [aabb.min[axis], aabb.max[axis]]);
+            near = max(enters, near);
+            far = min(leaves, far);
         }
         (near <= far && far >= self.t_min).then_some(near)
     }
@@ -89,6 +102,13 @@ mod tests {
             let ray = Ray::new([-3.0, 1.0001, 0.5], [1.0, zero, zero]);
             assert!(entry(ray, [0.0; 3], [1.0; 3]).is_none());
         }
+    }
+
+    #[test]
+    fn the_padding_widens_behind_the_origin_too() {
+        let ray = Ray::new([0.3, 0.3, 5.0], [0.1, 0.0, 1.0]).with_interval(-10.0, 10.0);
+        let t = entry(ray, [-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]).unwrap();
+        assert!(t <= -5.0 && t > -5.0 - 1e-5, "{t}");
     }
 
     #[test]

@@ -84,7 +84,7 @@ pub trait Intersect: Primitive {
     /// The ray's first hit with this primitive at a t in [`ray.t_min`, `ray.t_max`], and its payload.
     ///
     /// Expected to be a pure function: equal primitives and rays give equal answers. A t outside
-    /// the interval, or NaN, is no hit. Where rounding puts t before the ray's entry into the
+    /// the interval, NaN or infinite is no hit. Where rounding puts t before the ray's entry into the
     /// primitive's own box, queries report the entry instead, a difference of the rounding error:
     /// by this rule the tree's answer is the naive loop's, bit for bit.
     fn intersect(&self, ray: &Ray<Self::Scalar>) -> Option<(Self::Scalar, Self::Payload)>;

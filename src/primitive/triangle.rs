@@ -59,13 +59,16 @@ impl<S: Scalar> Intersect for Triangle<S> {
     }
 }
 
-/// The ray-triangle test of Moller and Trumbore (1997).
+/// The ray-triangle test of Moller and Trumbore (1997): Cramer's rule for
+/// `origin + t direction = a + u edge1 + v edge2`.
 ///
-/// Departures: no absolute epsilon rejects small triangles, only a determinant of exactly zero (the
-/// ray in the triangle's plane, or no area) misses; the comparisons are made against |det|, so that
-/// the one division is made only for a hit. Edges and corners count as inside, as far as the
-/// rounded arithmetic sees them: a ray at an edge that two triangles share may miss both.
-/// An intermediate that overflows makes a NaN or an infinity, which misses.
+/// Departures: the three products are grouped around the triangle's normal and `(a - origin) x
+/// direction`, as Embree does, so that a triangle without area, whose normal is zero, never hits,
+/// and fewer rays slip through edges. No absolute epsilon rejects small triangles, only a
+/// determinant of exactly zero (the ray in the triangle's plane, or no area) misses; comparisons are
+/// made against |det|, so that divisions are made only for a hit. Edges and corners count as
+/// inside, as far as the rounded arithmetic sees them: a ray at an edge that two triangles share may
+/// miss both. An intermediate that overflows makes a NaN or an infinity, which misses.
 #[inline(always)]
 pub(super) fn moller_trumbore<S: Scalar>(
     a: [S; 3],
@@ -77,24 +80,21 @@ pub(super) fn moller_trumbore<S: Scalar>(
     let edge1 = S::Vec3::from_array(b) - a;
     let edge2 = S::Vec3::from_array(c) - a;
     let direction = S::Vec3::from_array(ray.direction);
-    let p = direction.cross(edge2);
-    let signed_det = edge1.dot(p);
+    let to_a = a - S::Vec3::from_array(ray.origin);
+    let normal = edge1.cross(edge2);
+    let r = to_a.cross(direction);
+    let signed_det = normal.dot(direction);
     let det = signed_det.abs();
-    let s = S::Vec3::from_array(ray.origin) - a;
     // u, v and t are det times what they will be.
-    let u = s.dot(p).turned_by(signed_det);
-    if !(u >= S::ZERO && u <= det) {
+    let u = edge2.dot(r).turned_by(signed_det);
+    let v = -edge1.dot(r).turned_by(signed_det);
+    // Each false for NaN; u = v = 0 does not get a zero det past the last.
+    let inside = u >= S::ZERO && v >= S::ZERO && u + v <= det && det > S::ZERO;
+    if !inside {
         return None;
     }
-    let q = s.cross(edge1);
-    let v = direction.dot(q).turned_by(signed_det);
-    // A determinant of zero gets past the first comparison, with u = 0, but not past this.
-    if !(v >= S::ZERO && u + v <= det && det > S::ZERO) {
-        return None;
-    }
-    let inv_det = S::ONE / det;
-    let t = edge2.dot(q).turned_by(signed_det) * inv_det;
-    (t >= ray.t_min && t <= ray.t_max).then(|| (t, Barycentrics { u: u * inv_det, v: v * inv_det }))
+    let t = to_a.dot(normal).turned_by(signed_det) / det;
+    (t >= ray.t_min && t <= ray.t_max).then(|| (t, Barycentrics { u: u / det, v: v / det }))
 }
 
 #[cfg(test)]

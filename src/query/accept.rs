@@ -25,7 +25,7 @@ use crate::primitive::Intersect;
 /// is flat and its interval a single rounding wide; a t beyond the far side prunes nothing and is
 /// left alone.
 ///
-/// A NaN is no hit; -0 becomes +0.
+/// A NaN or infinite t is no hit; -0 becomes +0.
 #[inline(always)]
 pub(crate) fn accept<P: Intersect>(
     primitive: &P,
@@ -40,7 +40,7 @@ pub(crate) fn accept<P: Intersect>(
         return None;
     }
     let t = max(t, own_entry(primitive, slabs)?) + P::Scalar::ZERO;
-    (t >= ray.t_min && t <= limit).then_some((t, payload))
+    (t >= ray.t_min && t <= limit && t.is_finite()).then_some((t, payload))
 }
 
 /// Once or twice a ray: kept out of the loop, whose registers it would take.

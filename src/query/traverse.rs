@@ -11,7 +11,7 @@
 
 use super::counters::Recorder;
 use super::stack::Stack;
-use crate::geometry::{Scalar, Slabs, max};
+use crate::geometry::{Scalar, Slabs, max, min};
 use crate::simd::Lanes4;
 use crate::tree::{Child, MAX_DEPTH, Node, Tree};
 use core::ops::{ControlFlow, Range};
@@ -91,6 +91,9 @@ pub(super) fn traverse<S: Scalar>(
 /// Where the ray enters the children's boxes, from t_min on, and which of them it meets up to `limit`.
 #[inline(always)]
 pub(super) fn enter_children<S: Scalar>(node: &Node<S>, slabs: &Slabs<S>, limit: S) -> ([S; 2], [bool; 2]) {
+    if slabs.t_min < S::ZERO {
+        return enter_children_behind(node, slabs, limit);
+    }
     // One maximum serves both ends: the far side is computed with its sign turned.
     let mut bounds = S::Lanes4::of_halves(slabs.t_min, -limit);
     for axis in 0..3 {
@@ -100,5 +103,21 @@ pub(super) fn enter_children<S: Scalar>(node: &Node<S>, slabs: &Slabs<S>, limit:
         bounds = planes.sub(S::Lanes4::splat(slabs.origin[axis])).mul(inv).max(bounds);
     }
     let [near, far] = bounds.to_pairs_negating_second();
+    (near, [near[0] <= far[0], near[1] <= far[1]])
+}
+
+/// The same for a ray that also looks behind its origin, where the padding has the other sign.
+#[cold]
+#[inline(never)]
+fn enter_children_behind<S: Scalar>(node: &Node<S>, slabs: &Slabs<S>, limit: S) -> ([S; 2], [bool; 2]) {
+    let (mut near, mut far) = ([slabs.t_min; 2], [limit; 2]);
+    for axis in 0..3 {
+        let [minima, maxima] = node.planes[axis];
+        for side in [0, 1] {
+            let [enters, leaves] = slabs.slab(axis, [minima[side], maxima[side]]);
+            near[side] = max(enters, near[side]);
+            far[side] = min(leaves, far[side]);
+        }
+    }
     (near, [near[0] <= far[0], near[1] <= far[1]])
 }

@@ -45,8 +45,13 @@ pub struct LeafSizes {
 impl<S: Scalar> Tree<S> {
     /// Walks the tree once and reports on it.
     pub fn report(&self) -> TreeReport {
-        let scale = self.aabb.area_scale();
-        let area = |aabb: &Aabb<S>| aabb.scaled_half_area(scale).to_f64();
+        // In f64, and halved before the difference: an extent may overflow its own scalar.
+        let halved = |aabb: &Aabb<S>| Aabb {
+            min: aabb.min.map(|x| x.to_f64() * 0.5),
+            max: aabb.max.map(|x| x.to_f64() * 0.5),
+        };
+        let scale = halved(&self.aabb).area_scale();
+        let area = |aabb: &Aabb<S>| halved(aabb).scaled_half_area(scale);
         let root_area = area(&self.aabb);
         // A root without area is a point or a segment: what meets it meets everything in it.
         let weight = |aabb: &Aabb<S>| if root_area > 0.0 { area(aabb) / root_area } else { 1.0 };

@@ -33,14 +33,14 @@ impl BinnedSah {
     /// The largest number of bins.
     pub const MAX_BINS: usize = 64;
 
-    /// With `bins` bins and both costs 1.
+    /// With `bins` bins and the default costs.
     pub fn new(bins: usize) -> Self {
         Self { bins, cost: SahCost::default() }
     }
 }
 
 impl Default for BinnedSah {
-    /// 16 bins, both costs 1.
+    /// 16 bins and the default costs.
     fn default() -> Self {
         Self::new(16)
     }
@@ -66,11 +66,12 @@ impl BinnedSah {
         let n = node.references.len();
         let count = self.bins.clamp(2, N);
         let scale = node.aabb.area_scale();
+        let area = node.aabb.scaled_half_area(scale).to_f64();
         let plane = |span| Bins::<S, N>::of(node.references, span, count).best_plane(scale);
         match plane(&node.aabb).or_else(|| plane(&node.centroids)) {
             Some(best)
                 if n > node.max_leaf_size
-                    || !self.cost.prefers_leaf(n, node.aabb.scaled_half_area(scale), best.weighted_area) =>
+                    || !self.cost.prefers_leaf(n, area, best.weighted_area.to_f64()) =>
             {
                 best.split
             }

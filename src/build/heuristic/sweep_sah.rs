@@ -31,7 +31,14 @@ impl<S: Scalar> Heuristic<S> for SweepSah {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
         let n = node.references.len();
         let scale = node.aabb.area_scale();
-        let best = |axis, memory: &mut [Place<S>]| best_count(node.references, axis, scale, memory);
+        let best = |axis: Axis, memory: &mut [Place]| {
+            if node.centroids.min[axis.index()] < node.centroids.max[axis.index()] {
+                best_count(node.references, axis, scale, memory)
+            } else {
+                // No order to sweep in.
+                Best { left: n / 2, weighted_area: f64::INFINITY }
+            }
+        };
         let sweeps = if n <= Self::SMALL {
             let mut memory = [Place::default(); Self::SMALL];
             Axis::ALL.map(|axis| best(axis, &mut memory[..n]))
@@ -50,7 +57,7 @@ impl<S: Scalar> Heuristic<S> for SweepSah {
                 (axis, best) = (next, sweep);
             }
         }
-        let area = node.aabb.scaled_half_area(scale);
+        let area = node.aabb.scaled_half_area(scale).to_f64();
         if n <= node.max_leaf_size && self.cost.prefers_leaf(n, area, best.weighted_area) {
             Split::Leaf
         } else {
@@ -60,37 +67,33 @@ impl<S: Scalar> Heuristic<S> for SweepSah {
 }
 
 #[derive(Clone, Copy)]
-struct Best<S> {
+struct Best {
     left: usize,
-    weighted_area: S,
+    weighted_area: f64,
 }
 
 /// A place in the order of the centroids along an axis.
 #[derive(Clone, Copy, Default)]
-struct Place<S> {
+struct Place {
     /// The centroid as ordered bits, then the primitive's index: sorted as [`Split::Count`] counts.
     key: (u64, u32),
     /// The reference's position in the node.
     position: u32,
     /// The cost of everything from this place on.
-    right_cost: S,
+    right_cost: f64,
 }
 
 /// The cheapest split by number along an axis. `memory` has a place for each reference.
-fn best_count<S: Scalar>(
-    references: &[PrimRef<S>],
-    axis: Axis,
-    scale: S,
-    memory: &mut [Place<S>],
-) -> Best<S> {
+fn best_count<S: Scalar>(references: &[PrimRef<S>], axis: Axis, scale: S, memory: &mut [Place]) -> Best {
     let n = references.len();
     for ((place, reference), position) in memory.iter_mut().zip(references).zip(0..) {
         place.key = (reference.centroid[axis.index()].to_ordered_bits(), reference.index);
         place.position = position;
     }
     memory.sort_unstable_by_key(|place| place.key);
-    let cost = |aabb: &Aabb<S>, count: usize| aabb.scaled_half_area(scale) * S::from_f64(count as f64);
-    let aabb_of = |place: &Place<S>| references[place.position as usize].aabb;
+    // In f64, where the sums of products of an f32 and a count are exact: equals compare equal.
+    let cost = |aabb: &Aabb<S>, count: usize| aabb.scaled_half_area(scale).to_f64() * count as f64;
+    let aabb_of = |place: &Place| references[place.position as usize].aabb;
 
     let mut right = Aabb::EMPTY;
     for (place, count) in memory[1..].iter_mut().rev().zip(1..) {
@@ -98,11 +101,14 @@ fn best_count<S: Scalar>(
         place.right_cost = cost(&right, count);
     }
     let mut left = Aabb::EMPTY;
-    let mut best = Best { left: n / 2, weighted_area: S::INFINITY };
+    let mut best = Best { left: n / 2, weighted_area: f64::INFINITY };
     for (pair, count) in memory.windows(2).zip(1..) {
         left = left.union(aabb_of(&pair[0]));
         let weighted_area = cost(&left, count) + pair[1].right_cost;
-        if weighted_area < best.weighted_area {
+        // Of equals the most even: identical primitives make halves, not a chain.
+        let is_better = weighted_area < best.weighted_area
+            || weighted_area == best.weighted_area && count.abs_diff(n / 2) < best.left.abs_diff(n / 2);
+        if is_better {
             best = Best { left: count, weighted_area };
         }
     }
