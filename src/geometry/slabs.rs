@@ -15,8 +15,8 @@ use super::{Aabb, Ray, Scalar, max, min};
 /// `inv_near` and `inv_far` are 1 / direction, made smaller and larger by 3 epsilon: each side of
 /// the test makes at most four roundings of half an epsilon, so that the interval contains the
 /// exact one (Ize 2013, who widens the far side alone; both are needed where a hit is compared with
-/// `near`). Behind the origin, at negative t, the two change places, which only rays with a
-/// negative `t_min` have to mind: the others never look there.
+/// `near`). Behind the origin, at negative t, the two change places for a ray with a negative
+/// `t_min`; other rays never look there, and for them nothing is decided by the sign.
 ///
 /// On an axis with direction +0 or -0 the inverse is infinite: a plane strictly on one side gives
 /// an infinity of the right sign, and a plane through the origin 0 * infinity = NaN, which the
@@ -58,7 +58,8 @@ impl<S: Scalar> Slabs<S> {
         let (first, last) = if negative { (max, min) } else { (min, max) };
         let at = |plane: S, ahead: S, behind: S| {
             let distance = plane - self.origin[axis];
-            distance * if (distance < S::ZERO) == negative { ahead } else { behind }
+            let is_behind = self.t_min < S::ZERO && (distance < S::ZERO) != negative;
+            distance * if is_behind { behind } else { ahead }
         };
         let (inv_near, inv_far) = (self.inv_near[axis], self.inv_far[axis]);
         [at(first, inv_near, inv_far), at(last, inv_far, inv_near)]

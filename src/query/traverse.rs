@@ -121,3 +121,34 @@ fn enter_children_behind<S: Scalar>(node: &Node<S>, slabs: &Slabs<S>, limit: S) 
     }
     (near, [near[0] <= far[0], near[1] <= far[1]])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Aabb, Ray};
+
+    #[test]
+    fn one_box_and_two_boxes_round_alike() {
+        // Distances that underflow when multiplied, on either side of the origin, and ordinary ones.
+        let values = [-1.0f32, -1e-45, -0.0, 0.0, 1e-45, 2e-45, 1e-38, 0.625, 1.0];
+        let directions = [-2.0f32, -1.0, -0.0, 0.0, 0.5, 2.0];
+        for t_min in [-3.0, 0.0, 1e-45] {
+            for &origin in &values {
+                for &direction in &directions {
+                    let ray = Ray::new([origin, 0.0, 0.0], [direction, 1.0, 0.0]).with_interval(t_min, 9.0);
+                    let slabs = Slabs::new(&ray);
+                    for (i, &low) in values.iter().enumerate() {
+                        for &high in &values[i..] {
+                            let aabb = Aabb::new([low, -0.5, 0.0], [high, 0.5, 0.0]);
+                            let single = slabs.entry(&aabb).map(|t| max(t, t_min));
+                            let (entries, met) = enter_children(&Node::new([aabb; 2]), &slabs, 9.0);
+                            let pair = met[0].then_some(entries[0]);
+                            assert_eq!(single, pair, "{ray:?} {aabb:?}");
+                            assert_eq!((entries[0], met[0]), (entries[1], met[1]));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
