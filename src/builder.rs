@@ -169,8 +169,9 @@ impl<P: Primitive, H: Heuristic<P::Scalar>> Builder<P, H> {
         Self { max_leaf_size, ..self }
     }
 
-    /// Builds with a pool of `threads` threads of its own, 0 meaning one for each core. Unless set,
-    /// the build uses rayon's pool that it is called in. Without the feature `rayon` builds use the
+    /// Builds with a pool of `threads` threads that is started for this build, 0 meaning one for each
+    /// core. Unless set, the build uses rayon's pool that it is called in, which is quicker for many
+    /// small builds. Without the feature `rayon` builds use the
     /// calling thread. The tree is the same in all cases.
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {

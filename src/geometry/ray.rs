@@ -5,8 +5,9 @@ use core::fmt;
 
 /// The points `origin + t * direction` with t in the closed interval [`t_min`, `t_max`].
 ///
-/// The direction need not be normalised: t is in units of its length. An invalid ray (see
-/// [`validate`](Self::validate)) hits nothing.
+/// The direction need not be normalised: t is in units of its length. A component so small that its
+/// reciprocal overflows (2.9e-39 for f32, 5.6e-309 for f64) counts as zero where boxes are met; scale
+/// such a direction up. An invalid ray (see [`validate`](Self::validate)) hits nothing.
 ///
 /// ```
 /// use bvhkit::{Ray, RayError};
