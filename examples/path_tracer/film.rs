@@ -1,5 +1,7 @@
 //! The picture as radiances, and its way to a PNG file: exposure, tone mapping, encoding.
 
+use std::fs;
+use std::io::Cursor;
 use std::path::Path;
 
 use anyhow::{Context, Result};
@@ -52,8 +54,13 @@ impl Film {
 
 /// Writes the picture as PNG, whatever the file's extension.
 pub fn save(image: &RgbImage, path: &Path) -> Result<()> {
-    let saved = image.save_with_format(path, ImageFormat::Png);
-    saved.with_context(|| format!("cannot write {}", path.display()))
+    let write = || -> Result<()> {
+        let mut png = Cursor::new(Vec::new());
+        image.write_to(&mut png, ImageFormat::Png)?;
+        // In one go: an encoder's own buffer drops the error of its last write.
+        Ok(fs::write(path, png.into_inner())?)
+    };
+    write().with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// Compresses luminance so that `WHITE` becomes 1: Reinhard et al., "Photographic Tone Reproduction

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use bvhkit::Counters;
 use glam::{UVec2, Vec3};
 use image::RgbImage;
@@ -62,7 +62,7 @@ fn run(options: &Options) -> Result<()> {
         None => Ok(scene::cornell_box()),
     })?;
     if !options.compare {
-        ensure_writable(&output)?;
+        ensure_writable(&output, options.scene.as_deref())?;
     }
     let max_leaf_size = options.max_leaf_size.map(usize::from);
     let threads = pool.current_num_threads();
@@ -193,7 +193,10 @@ fn default_output(options: &Options) -> PathBuf {
 }
 
 /// Fails now rather than after the rendering.
-fn ensure_writable(output: &Path) -> Result<()> {
+fn ensure_writable(output: &Path, scene: Option<&Path>) -> Result<()> {
+    let same =
+        |scene: &Path| matches!((output.canonicalize(), scene.canonicalize()), (Ok(a), Ok(b)) if a == b);
+    ensure!(!scene.is_some_and(same), "{} is the scene itself: choose another output", output.display());
     let opened = OpenOptions::new().write(true).create(true).truncate(false).open(output);
     opened.with_context(|| format!("cannot write {}", output.display())).map(drop)
 }

@@ -52,6 +52,8 @@ pub trait Scalar:
     fn sqrt(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
+    /// Finite and at least the smallest number of full precision in size.
+    fn is_normal_number(self) -> bool;
     /// Not a number.
     fn is_nan(self) -> bool;
     /// The next larger number (the smallest subnormal after zero).
@@ -126,6 +128,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn is_finite(self) -> bool {
                 $scalar::is_finite(self)
+            }
+            #[inline(always)]
+            fn is_normal_number(self) -> bool {
+                $scalar::is_normal(self)
             }
             #[inline(always)]
             fn is_nan(self) -> bool {

@@ -13,8 +13,8 @@ use super::{Aabb, Ray, Scalar, max, min};
 /// ```
 ///
 /// `inv_near` and `inv_far` are 1 / direction, made smaller and larger by 3 epsilon: each side of
-/// the test makes at most four roundings of half an epsilon, so that the interval contains the
-/// exact one (Ize 2013, who widens the far side alone; both are needed where a hit is compared with
+/// the test makes at most four roundings of half an epsilon, so that, underflow aside, the interval
+/// contains the exact one (Ize 2013, who widens the far side alone; both are needed where a hit is compared with
 /// `near`). Behind the origin, at negative t, the two change places for a ray with a negative
 /// `t_min`; other rays never look there, and for them nothing is decided by the sign.
 ///

@@ -5,7 +5,7 @@ use super::{Barycentrics, Intersect, Primitive, Triangle};
 use crate::geometry::{Aabb, Ray, Scalar};
 use core::fmt;
 
-/// Triangles as corners by index, in buffers that stay the user's.
+/// Triangles as corners by index, in buffers that stay the user's. Hit as [`Triangle`] is.
 ///
 /// Iterating over a `&TriangleMesh` gives its triangles in order, so a tree is built from it as from
 /// a list, and hits carry the triangle's number:
@@ -55,8 +55,8 @@ impl fmt::Display for MeshError {
             ),
             Self::NotTriples { length } => write!(
                 f,
-                "a flat buffer of {length} elements is not made of triples: give three per vertex \
-                 and per triangle"
+                "a flat buffer of {length} elements is not made of triples: give three coordinates \
+                 per vertex and three indices per triangle"
             ),
         }
     }

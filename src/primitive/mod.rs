@@ -86,7 +86,9 @@ pub trait Intersect: Primitive {
     /// Expected to be a pure function: equal primitives and rays give equal answers. A t outside
     /// the interval, NaN or infinite is no hit. Where rounding puts t before the ray's entry into the
     /// primitive's own box, queries report the entry instead, a difference of the rounding error:
-    /// by this rule the tree's answer is the naive loop's, bit for bit.
+    /// by this rule the tree's answer is the naive loop's, bit for bit. For the same reason a hit within
+    /// a few roundings of the interval's end may be on either side of it: to find a hit again, leave
+    /// `t_min` a little below its t.
     fn intersect(&self, ray: &Ray<Self::Scalar>) -> Option<(Self::Scalar, Self::Payload)>;
 }
 

@@ -66,11 +66,13 @@ impl<S: Scalar> Intersect for Sphere<S> {
         let to_line = to_origin + direction * (b / a);
         let r2 = self.radius * self.radius;
         let discriminant = r2 - to_line.dot(to_line);
-        // A product that overflowed goes on as NaN, and no t is in the interval then.
-        if discriminant < S::ZERO {
+        // Squares that left the range, either way, would give a t that means nothing.
+        let is_hit = discriminant >= S::ZERO && a.is_normal_number();
+        if !is_hit {
             return None;
         }
-        let root = (a * discriminant).sqrt();
+        // Two roots: the product may leave the range where neither factor does.
+        let root = a.sqrt() * discriminant.sqrt();
         let c = to_origin.dot(to_origin) - r2;
         let q = if b < S::ZERO { b - root } else { b + root };
         let (t0, t1) = (c / q, q / a);
@@ -94,6 +96,18 @@ mod tests {
         assert_eq!(sphere.intersect(&ray.with_interval(4.5, 5.5)), None);
         assert_eq!(sphere.intersect(&Ray::new([1.0, 2.0, 3.0], [1.0, 0.0, 0.0])), Some((2.0, ())));
         assert_eq!(sphere.intersect(&Ray::new([1.0, 4.5, -7.0], [0.0, 0.0, 1.0])), None);
+    }
+
+    #[test]
+    fn long_directions_and_large_radii_give_the_right_t_or_none() {
+        let sphere = Sphere::new([0.0f32; 3], 1e10);
+        let t = |origin, direction| sphere.intersect(&Ray::new(origin, direction)).map(|(t, ())| t);
+        assert!((t([9e9, 0.0, -3e10], [0.0, 0.0, 1e10]).unwrap() - 2.564_110).abs() < 1e-4);
+        assert!((t([5e9, 0.0, 0.0], [1e10, 0.0, 0.0]).unwrap() - 0.5).abs() < 1e-5);
+        assert_eq!(t([9e9, 0.0, 9e9], [0.0, 0.0, 1e10]), None);
+        for length in [2e19, 1e-23] {
+            assert_eq!(t([0.0; 3], [length, 0.0, 0.0]), None, "{length}");
+        }
     }
 
     #[test]

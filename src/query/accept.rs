@@ -22,8 +22,8 @@ use crate::primitive::Intersect;
 /// reached, and being the smallest by a total order, it does not depend on the order of visits.
 ///
 /// Raising t, instead of rejecting hits outside the own box's interval, loses nothing where the box
-/// is flat and its interval a single rounding wide; a t beyond the far side prunes nothing and is
-/// left alone.
+/// is flat and its interval a single rounding wide. A t beyond the far side prunes nothing and is
+/// left alone; only if the whole box ends before t_min is the primitive not hit.
 ///
 /// A NaN or infinite t is no hit; -0 becomes +0.
 #[inline(always)]
@@ -35,12 +35,12 @@ pub(crate) fn accept<P: Intersect>(
 ) -> Option<(P::Scalar, P::Payload)> {
     let (t, payload) = primitive.intersect(ray)?;
     // Most hits end here, and every NaN; raising t would not bring them back.
-    let in_reach = t <= limit;
+    let in_reach = t >= ray.t_min && t <= limit;
     if !in_reach {
         return None;
     }
     let t = max(t, own_entry(primitive, slabs)?) + P::Scalar::ZERO;
-    (t >= ray.t_min && t <= limit && t.is_finite()).then_some((t, payload))
+    (t <= limit && t.is_finite()).then_some((t, payload))
 }
 
 /// Once or twice a ray: kept out of the loop, whose registers it would take.

@@ -8,6 +8,10 @@
 //!       a leaf is visited, then pop
 //! pop:  entries beyond the visitor's limit, which may have shrunk since, are dropped
 //! ```
+//!
+//! Refused: choosing the children without branches (10 to 14 % fewer closest hits on two interiors, 1 to
+//! 6 % more shadow rays); prefetching the child that goes on the stack, and unchecked indexing (both
+//! within 3 %); vectors of three scalars instead of four lanes in the triangle test (up to 5 % fewer).
 
 use super::counters::Recorder;
 use super::stack::Stack;

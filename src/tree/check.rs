@@ -64,7 +64,7 @@ impl fmt::Display for InvariantError {
                 write!(f, "the index in slot {slot} is out of range or occurs twice")
             }
         }?;
-        f.write_str(": the tree was changed after it was built; build it again")
+        f.write_str(": a primitive's box changed after the build, or differs from call to call")
     }
 }
 

@@ -30,6 +30,9 @@ impl SweepSah {
 impl<S: Scalar> Heuristic<S> for SweepSah {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
         let n = node.references.len();
+        if n < 2 {
+            return Split::Leaf;
+        }
         let scale = node.aabb.area_scale();
         let best = |axis: Axis, memory: &mut [Place]| {
             if node.centroids.min[axis.index()] < node.centroids.max[axis.index()] {
