@@ -39,14 +39,8 @@ pub(crate) fn accept<P: Intersect>(
     if !in_reach {
         return None;
     }
-    let t = max(t, own_entry(primitive, slabs)?) + P::Scalar::ZERO;
+    let t = max(t, slabs.entry(&primitive.aabb())?) + P::Scalar::ZERO;
     (t <= limit && t.is_finite()).then_some((t, payload))
-}
-
-/// Once or twice a ray: kept out of the loop, whose registers it would take.
-#[inline(always)]
-fn own_entry<P: Intersect>(primitive: &P, slabs: &Slabs<P::Scalar>) -> Option<P::Scalar> {
-    slabs.entry(&primitive.aabb())
 }
 
 /// Whether a hit at (`t`, `index`) comes before another: by t, equal ones by index.
