@@ -77,9 +77,10 @@ pub use build::heuristic;
 pub use build::{Flaw, PrimRef, ThreadPoolError};
 pub use builder::{BuildError, Builder, OnInvalid, Quality};
 pub use bvh::Bvh;
-pub use geometry::{Aabb, Axis, Ray, RayError, Scalar};
+pub use geometry::{Aabb, Axis, PreparedRay, Ray, RayError, Scalar};
 pub use primitive::{
-    Barycentrics, Intersect, MeshError, MeshTriangle, Primitive, Sphere, Triangle, TriangleMesh,
+    Barycentrics, Corners, Fast, Intersect, MeshError, MeshTriangle, Precise, Primitive, Sphere, Triangle,
+    TriangleMesh, Watertight,
 };
 pub use query::{Counters, Hit, Hits, Recorder};
 pub use tree::{InvariantError, LeafSizes, MAX_DEPTH, Tree, TreeReport};

@@ -19,7 +19,7 @@
 //! ```
 
 use crate::build::PrimRef;
-use crate::geometry::{Ray, Slabs};
+use crate::geometry::Ray;
 use crate::primitive::Intersect;
 use crate::query::{Hit, HitOf, Recorder, accept, precedes};
 use alloc::vec::Vec;
@@ -69,10 +69,10 @@ pub fn hits<P: Intersect>(primitives: &[P], ray: &Ray<P::Scalar>) -> Vec<HitOf<P
 /// The hits in the order of the input.
 fn all<'a, P: Intersect>(
     primitives: &'a [P],
-    ray: &'a Ray<P::Scalar>,
+    ray: &Ray<P::Scalar>,
     recorder: &'a mut impl Recorder,
-) -> impl Iterator<Item = HitOf<P>> + 'a {
-    let slabs = Slabs::new(ray);
+) -> impl Iterator<Item = HitOf<P>> {
+    let prepared = ray.prepare();
     let valid = ray.is_valid();
     if valid {
         recorder.ray();
@@ -80,7 +80,7 @@ fn all<'a, P: Intersect>(
     let asked = if valid { primitives } else { &[] };
     asked.iter().enumerate().filter_map(move |(index, primitive)| {
         recorder.primitive();
-        let (t, payload) = accept(primitive, ray, &slabs, ray.t_max)?;
+        let (t, payload) = accept(primitive, &prepared, prepared.t_max)?;
         PrimRef::new(primitive, 0).flaw().is_none().then_some(Hit { t, index, payload })
     })
 }

@@ -7,7 +7,7 @@ mod common {
 
 use bvhkit::heuristic::{BinnedSah, BuildNode, Heuristic, Median, Midpoint, Split, SweepSah};
 use bvhkit::{
-    Aabb, Axis, BuildError, Bvh, Intersect, MAX_DEPTH, Primitive, Quality, Ray, Scalar, Sphere, reference,
+    Aabb, Axis, BuildError, Bvh, Intersect, MAX_DEPTH, PreparedRay, Primitive, Quality, Ray, Scalar, Sphere, reference,
 };
 use common::heuristics;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -197,7 +197,7 @@ fn an_intersection_that_answers_nonsense_is_no_hit() {
     }
     impl Intersect for Liar {
         type Payload = ();
-        fn intersect(&self, _: &Ray) -> Option<(f32, ())> {
+        fn intersect(&self, _: &PreparedRay) -> Option<(f32, ())> {
             Some((self.0, ()))
         }
     }

@@ -8,7 +8,7 @@ mod common {
     pub mod hostile;
 }
 
-use bvhkit::{Aabb, BuildError, Bvh, Flaw, Intersect, OnInvalid, Primitive, Ray, Scalar, Sphere, Triangle};
+use bvhkit::{Aabb, BuildError, Bvh, Flaw, Intersect, OnInvalid, PreparedRay, Primitive, Ray, Scalar, Sphere, Triangle};
 use common::agreement::assert_agreement;
 use common::aimed::{aimed, soup, triangles};
 use common::answers::{Answers, Payload};
@@ -101,7 +101,7 @@ impl Primitive for Sorted {
 
 impl Intersect for Sorted {
     type Payload = ();
-    fn intersect(&self, ray: &Ray) -> Option<(f32, ())> {
+    fn intersect(&self, ray: &PreparedRay) -> Option<(f32, ())> {
         self.0.intersect(ray)
     }
 }

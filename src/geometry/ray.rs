@@ -1,6 +1,6 @@
 //! The ray: an origin, a direction, and the interval of t that counts.
 
-use super::Scalar;
+use super::{PreparedRay, Scalar};
 use core::fmt;
 
 /// The points `origin + t * direction` with t in the closed interval [`t_min`, `t_max`].
@@ -74,6 +74,13 @@ impl<S: Scalar> Ray<S> {
     pub fn at(&self, t: S) -> [S; 3] {
         let ([ox, oy, oz], [dx, dy, dz]) = (self.origin, self.direction);
         [ox + dx * t, oy + dy * t, oz + dz * t]
+    }
+
+    /// With what is computed once for all boxes and primitives, to call
+    /// [`Intersect::intersect`](crate::Intersect::intersect) with. Queries do it themselves.
+    #[inline(always)]
+    pub fn prepare(&self) -> PreparedRay<S> {
+        PreparedRay::new(self)
     }
 
     /// What makes this ray hit nothing, if anything does.

@@ -43,6 +43,9 @@ pub trait Scalar:
     /// Four of them side by side, for the slab test of two boxes.
     #[doc(hidden)]
     type Lanes4: crate::simd::Lanes4<Self>;
+    /// The scalar in which products and differences of this one's lose little or nothing: `f64`.
+    #[doc(hidden)]
+    type Wide: Scalar;
 
     /// The absolute value.
     fn abs(self) -> Self;
@@ -60,6 +63,12 @@ pub trait Scalar:
     fn next_up(self) -> Self;
     /// The next smaller number.
     fn next_down(self) -> Self;
+    /// Exactly, in the wide scalar.
+    #[doc(hidden)]
+    fn widen(self) -> Self::Wide;
+    /// The nearest to a wide scalar.
+    #[doc(hidden)]
+    fn narrow(wide: Self::Wide) -> Self;
     /// A total order, -0 before +0.
     fn total_cmp(&self, other: &Self) -> core::cmp::Ordering;
     /// The nearest scalar to `value`.
@@ -89,6 +98,7 @@ pub trait Vector<S>: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<S, Out
     fn from_array(array: [S; 3]) -> Self;
     fn dot(self, other: Self) -> S;
     fn cross(self, other: Self) -> Self;
+    fn to_array(self) -> [S; 3];
 }
 
 mod sealed {
@@ -108,6 +118,7 @@ macro_rules! scalar {
             const EPSILON: Self = $scalar::EPSILON;
             type Vec3 = $vec3;
             type Lanes4 = $lanes4;
+            type Wide = f64;
 
             #[inline(always)]
             fn abs(self) -> Self {
@@ -146,6 +157,14 @@ macro_rules! scalar {
                 $scalar::next_down(self)
             }
             #[inline(always)]
+            fn widen(self) -> f64 {
+                f64::from(self)
+            }
+            #[inline(always)]
+            fn narrow(wide: f64) -> Self {
+                wide as $scalar
+            }
+            #[inline(always)]
             fn total_cmp(&self, other: &Self) -> core::cmp::Ordering {
                 $scalar::total_cmp(self, other)
             }
@@ -182,6 +201,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn cross(self, other: Self) -> Self {
                 <$vec3>::cross(self, other)
+            }
+            #[inline(always)]
+            fn to_array(self) -> [$scalar; 3] {
+                <$vec3>::to_array(&self)
             }
         }
     };

@@ -1,15 +1,15 @@
 //! What a tree can hold: anything with bounds; and what a ray can hit.
 
 mod aabb;
-mod mesh;
 mod sphere;
 mod triangle;
 
-pub use mesh::{MeshError, MeshTriangle, TriangleMesh};
 pub use sphere::Sphere;
-pub use triangle::{Barycentrics, Triangle};
+pub use triangle::{
+    Barycentrics, Corners, Fast, MeshError, MeshTriangle, Precise, Triangle, TriangleMesh, Watertight,
+};
 
-use crate::geometry::{Aabb, Ray, Scalar};
+use crate::geometry::{Aabb, PreparedRay, Scalar};
 use alloc::boxed::Box;
 
 /// Something with a bounding box: all that a tree needs to be built.
@@ -47,7 +47,7 @@ pub trait Primitive {
 /// A primitive that rays can hit.
 ///
 /// ```
-/// use bvhkit::{Aabb, Bvh, Intersect, Primitive, Ray};
+/// use bvhkit::{Aabb, Bvh, Intersect, PreparedRay, Primitive, Ray};
 ///
 /// /// A disc in the plane z = height.
 /// struct Disc { center: [f32; 2], height: f32, radius: f32 }
@@ -62,7 +62,7 @@ pub trait Primitive {
 ///
 /// impl Intersect for Disc {
 ///     type Payload = f32; // the distance from the disc's center
-///     fn intersect(&self, ray: &Ray) -> Option<(f32, f32)> {
+///     fn intersect(&self, ray: &PreparedRay) -> Option<(f32, f32)> {
 ///         let t = (self.height - ray.origin[2]) / ray.direction[2];
 ///         let [x, y, _] = ray.at(t);
 ///         let distance = (x - self.center[0]).hypot(y - self.center[1]);
@@ -89,7 +89,7 @@ pub trait Intersect: Primitive {
     /// by this rule the tree's answer is the naive loop's, bit for bit. For the same reason a hit within
     /// a few roundings of the interval's end may be on either side of it: to find a hit again, leave
     /// `t_min` a little below its t.
-    fn intersect(&self, ray: &Ray<Self::Scalar>) -> Option<(Self::Scalar, Self::Payload)>;
+    fn intersect(&self, ray: &PreparedRay<Self::Scalar>) -> Option<(Self::Scalar, Self::Payload)>;
 }
 
 macro_rules! forward {
@@ -109,7 +109,7 @@ macro_rules! forward {
         impl<P: Intersect + ?Sized> Intersect for $pointer {
             type Payload = P::Payload;
             #[inline(always)]
-            fn intersect(&self, ray: &Ray<P::Scalar>) -> Option<(P::Scalar, P::Payload)> {
+            fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, P::Payload)> {
                 (**self).intersect(ray)
             }
         }

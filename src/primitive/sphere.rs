@@ -1,7 +1,7 @@
 //! The sphere.
 
 use super::{Intersect, Primitive};
-use crate::geometry::{Aabb, Ray, Scalar, Vector};
+use crate::geometry::{Aabb, PreparedRay, Scalar, Vector};
 
 /// A sphere's surface: a ray from inside hits it on the way out.
 ///
@@ -58,7 +58,7 @@ impl<S: Scalar> Intersect for Sphere<S> {
     /// larger (none for origins near the surface). Squares of lengths are computed: a direction or a
     /// distance whose square leaves the scalar's range (1e19 or 1e-19 for f32) misses.
     #[inline(always)]
-    fn intersect(&self, ray: &Ray<S>) -> Option<(S, ())> {
+    fn intersect(&self, ray: &PreparedRay<S>) -> Option<(S, ())> {
         let direction = S::Vec3::from_array(ray.direction);
         let to_origin = S::Vec3::from_array(ray.origin) - S::Vec3::from_array(self.center);
         let a = direction.dot(direction);
@@ -86,22 +86,23 @@ impl<S: Scalar> Intersect for Sphere<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Ray;
 
     #[test]
     fn from_outside_the_near_root_from_inside_the_far_one() {
         let sphere = Sphere::new([1.0f64, 2.0, 3.0], 2.0);
         let ray = Ray::new([1.0, 2.0, -7.0], [0.0, 0.0, 2.0]);
-        assert_eq!(sphere.intersect(&ray), Some((4.0, ())));
-        assert_eq!(sphere.intersect(&ray.with_interval(4.5, 9.0)), Some((6.0, ())));
-        assert_eq!(sphere.intersect(&ray.with_interval(4.5, 5.5)), None);
-        assert_eq!(sphere.intersect(&Ray::new([1.0, 2.0, 3.0], [1.0, 0.0, 0.0])), Some((2.0, ())));
-        assert_eq!(sphere.intersect(&Ray::new([1.0, 4.5, -7.0], [0.0, 0.0, 1.0])), None);
+        assert_eq!(sphere.intersect(&ray.prepare()), Some((4.0, ())));
+        assert_eq!(sphere.intersect(&ray.with_interval(4.5, 9.0).prepare()), Some((6.0, ())));
+        assert_eq!(sphere.intersect(&ray.with_interval(4.5, 5.5).prepare()), None);
+        assert_eq!(sphere.intersect(&Ray::new([1.0, 2.0, 3.0], [1.0, 0.0, 0.0]).prepare()), Some((2.0, ())));
+        assert_eq!(sphere.intersect(&Ray::new([1.0, 4.5, -7.0], [0.0, 0.0, 1.0]).prepare()), None);
     }
 
     #[test]
     fn long_directions_and_large_radii_give_the_right_t_or_none() {
         let sphere = Sphere::new([0.0f32; 3], 1e10);
-        let t = |origin, direction| sphere.intersect(&Ray::new(origin, direction)).map(|(t, ())| t);
+        let t = |origin, direction| sphere.intersect(&Ray::new(origin, direction).prepare()).map(|(t, ())| t);
         assert!((t([9e9, 0.0, -3e10], [0.0, 0.0, 1e10]).unwrap() - 2.5641).abs() < 1e-4);
         assert!((t([5e9, 0.0, 0.0], [1e10, 0.0, 0.0]).unwrap() - 0.5).abs() < 1e-5);
         assert_eq!(t([9e9, 0.0, 9e9], [0.0, 0.0, 1e10]), None);
@@ -113,7 +114,7 @@ mod tests {
     #[test]
     fn a_small_sphere_far_away_is_found_at_its_surface() {
         let sphere = Sphere::new([0.0f32, 0.0, 1e6], 1.0);
-        let (t, ()) = sphere.intersect(&Ray::new([0.5, 0.0, 0.0], [0.0, 0.0, 1.0])).unwrap();
+        let (t, ()) = sphere.intersect(&Ray::new([0.5, 0.0, 0.0], [0.0, 0.0, 1.0]).prepare()).unwrap();
         assert!((t - 1e6).abs() <= 1.0, "{t}");
     }
 

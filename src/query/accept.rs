@@ -1,6 +1,6 @@
 //! What counts as a hit: one rule for the tree, the naive loop, and every query.
 
-use crate::geometry::{Ray, Scalar, Slabs, max};
+use crate::geometry::{PreparedRay, Scalar, max};
 use crate::primitive::Intersect;
 
 /// The t and the payload of the ray's hit with `primitive`, if it has one in
@@ -29,8 +29,7 @@ use crate::primitive::Intersect;
 #[inline(always)]
 pub(crate) fn accept<P: Intersect>(
     primitive: &P,
-    ray: &Ray<P::Scalar>,
-    slabs: &Slabs<P::Scalar>,
+    ray: &PreparedRay<P::Scalar>,
     limit: P::Scalar,
 ) -> Option<(P::Scalar, P::Payload)> {
     let (t, payload) = primitive.intersect(ray)?;
@@ -39,7 +38,7 @@ pub(crate) fn accept<P: Intersect>(
     if !in_reach {
         return None;
     }
-    let t = max(t, slabs.entry(&primitive.aabb())?) + P::Scalar::ZERO;
+    let t = max(t, ray.slabs.entry(&primitive.aabb())?) + P::Scalar::ZERO;
     (t <= limit && t.is_finite()).then_some((t, payload))
 }
 

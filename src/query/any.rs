@@ -3,7 +3,7 @@
 use super::counters::Recorder;
 use super::traverse::{Visitor, traverse};
 use super::{Scene, accept};
-use crate::geometry::{Ray, Slabs};
+use crate::geometry::{PreparedRay, Ray};
 use crate::primitive::{Intersect, Primitive};
 use core::ops::{ControlFlow, Range};
 
@@ -16,17 +16,16 @@ pub(crate) fn any_hit<P: Intersect>(
         return false;
     }
     recorder.ray();
-    let slabs = Slabs::new(ray);
-    let mut any = Any { scene, ray, slabs: &slabs, found: false };
-    traverse(scene.tree, &slabs, &mut any, recorder);
+    let ray = ray.prepare();
+    let mut any = Any { scene, ray: &ray, found: false };
+    traverse(scene.tree, &ray.slabs, &mut any, recorder);
     any.found
 }
 
 /// Stops at the first hit accepted.
 struct Any<'a, P: Intersect> {
     scene: Scene<'a, P>,
-    ray: &'a Ray<P::Scalar>,
-    slabs: &'a Slabs<P::Scalar>,
+    ray: &'a PreparedRay<P::Scalar>,
     found: bool,
 }
 
@@ -40,7 +39,7 @@ impl<P: Intersect> Visitor<P::Scalar> for Any<'_, P> {
     fn leaf(&mut self, slots: Range<usize>, recorder: &mut impl Recorder) -> ControlFlow<()> {
         for primitive in &self.scene.primitives[slots] {
             recorder.primitive();
-            if accept(primitive, self.ray, self.slabs, self.ray.t_max).is_some() {
+            if accept(primitive, self.ray, self.ray.t_max).is_some() {
                 self.found = true;
                 return ControlFlow::Break(());
             }

@@ -3,7 +3,7 @@
 use super::counters::Recorder;
 use super::traverse::{Visitor, traverse};
 use super::{Hit, HitOf, Scene, accept, precedes};
-use crate::geometry::{Ray, Slabs};
+use crate::geometry::{PreparedRay, Ray};
 use crate::primitive::{Intersect, Primitive};
 use core::ops::{ControlFlow, Range};
 
@@ -16,17 +16,16 @@ pub(crate) fn closest_hit<P: Intersect>(
         return None;
     }
     recorder.ray();
-    let slabs = Slabs::new(ray);
-    let mut closest = Closest { scene, ray, slabs: &slabs, limit: ray.t_max, best: None };
-    traverse(scene.tree, &slabs, &mut closest, recorder);
+    let ray = ray.prepare();
+    let mut closest = Closest { scene, ray: &ray, limit: ray.t_max, best: None };
+    traverse(scene.tree, &ray.slabs, &mut closest, recorder);
     closest.best.map(|(index, payload)| Hit { t: closest.limit, index: index as usize, payload })
 }
 
 /// Keeps the smallest (t, index) seen; its t is the limit.
 struct Closest<'a, P: Intersect> {
     scene: Scene<'a, P>,
-    ray: &'a Ray<P::Scalar>,
-    slabs: &'a Slabs<P::Scalar>,
+    ray: &'a PreparedRay<P::Scalar>,
     limit: P::Scalar,
     best: Option<(u32, P::Payload)>,
 }
@@ -42,7 +41,7 @@ impl<P: Intersect> Visitor<P::Scalar> for Closest<'_, P> {
         let indices = &self.scene.tree.indices[slots.clone()];
         for (primitive, &index) in self.scene.primitives[slots].iter().zip(indices) {
             recorder.primitive();
-            if let Some((t, payload)) = accept(primitive, self.ray, self.slabs, self.limit)
+            if let Some((t, payload)) = accept(primitive, self.ray, self.limit)
                 && self.best.is_none_or(|(best, _)| precedes(t, index, self.limit, best))
             {
                 self.limit = t;

@@ -3,7 +3,7 @@
 use super::counters::Recorder;
 use super::traverse::enter_children;
 use super::{Hit, HitOf, Scene, accept};
-use crate::geometry::{Ray, Scalar, Slabs};
+use crate::geometry::{PreparedRay, Ray, Scalar};
 use crate::primitive::Intersect;
 use crate::tree::Child;
 use alloc::collections::BinaryHeap;
@@ -19,8 +19,7 @@ use core::cmp::Ordering;
 /// From [`Bvh::hits`](crate::Bvh::hits).
 pub struct Hits<'a, P: Intersect, R = ()> {
     scene: Scene<'a, P>,
-    ray: Ray<P::Scalar>,
-    slabs: Slabs<P::Scalar>,
+    ray: PreparedRay<P::Scalar>,
     queue: BinaryHeap<Event<P::Scalar, P::Payload>>,
     recorder: R,
 }
@@ -39,16 +38,16 @@ enum What<T> {
 impl<'a, P: Intersect, R: Recorder> Hits<'a, P, R> {
     pub(crate) fn new(scene: Scene<'a, P>, ray: &Ray<P::Scalar>, mut recorder: R) -> Self {
         let mut queue = BinaryHeap::new();
-        let slabs = Slabs::new(ray);
+        let ray = ray.prepare();
         if ray.is_valid() {
             recorder.ray();
             if let Some(root) = scene.tree.root()
-                && let Some(t) = slabs.entry(&scene.tree.aabb).filter(|&t| t <= ray.t_max)
+                && let Some(t) = ray.slabs.entry(&scene.tree.aabb).filter(|&t| t <= ray.t_max)
             {
                 queue.push(Event { t, what: What::Box(root) });
             }
         }
-        Self { scene, ray: *ray, slabs, queue, recorder }
+        Self { scene, ray, queue, recorder }
     }
 
     /// Puts what is in a box into the queue.
@@ -58,9 +57,7 @@ impl<'a, P: Intersect, R: Recorder> Hits<'a, P, R> {
             self.recorder.leaf();
             for slot in child.slots() {
                 self.recorder.primitive();
-                if let Some((t, payload)) =
-                    accept(&self.scene.primitives[slot], &self.ray, &self.slabs, limit)
-                {
+                if let Some((t, payload)) = accept(&self.scene.primitives[slot], &self.ray, limit) {
                     let index = self.scene.tree.indices[slot];
                     self.queue.push(Event { t, what: What::Hit { index, payload } });
                 }
@@ -68,7 +65,7 @@ impl<'a, P: Intersect, R: Recorder> Hits<'a, P, R> {
         } else {
             self.recorder.node();
             let node = &self.scene.tree.nodes[child.first as usize];
-            let (entries, met) = enter_children(node, &self.slabs, limit);
+            let (entries, met) = enter_children(node, &self.ray.slabs, limit);
             for side in 0..2 {
                 if met[side] {
                     self.queue.push(Event { t: entries[side], what: What::Box(node.children[side]) });

@@ -1,6 +1,6 @@
 //! One soup of corners, seen as every kind of primitive.
 
-use bvhkit::{Aabb, Intersect, Primitive, Ray, Scalar, Sphere, Triangle};
+use bvhkit::{Aabb, Intersect, PreparedRay, Primitive, Ray, Scalar, Sphere, Triangle};
 
 /// Three points; what a primitive makes of them is its own affair.
 pub type Corners<S> = [[S; 3]; 3];
@@ -47,7 +47,7 @@ impl<S: Scalar> Primitive for Disc<S> {
 impl<S: Scalar> Intersect for Disc<S> {
     type Payload = [S; 3];
 
-    fn intersect(&self, ray: &Ray<S>) -> Option<(S, [S; 3])> {
+    fn intersect(&self, ray: &PreparedRay<S>) -> Option<(S, [S; 3])> {
         let t = (self.center[2] - ray.origin[2]) / ray.direction[2];
         let point = ray.at(t);
         let [x, y] = [0, 1].map(|axis| point[axis] - self.center[axis]);

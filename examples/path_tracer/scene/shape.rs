@@ -1,6 +1,6 @@
 //! The primitive of the path tracer: a triangle or an analytic sphere, side by side in one tree.
 
-use bvhkit::{Aabb, Barycentrics, Intersect, Primitive, Ray, Sphere, Triangle};
+use bvhkit::{Aabb, Barycentrics, Intersect, PreparedRay, Primitive, Sphere, Triangle};
 use glam::Vec3;
 
 /// One primitive of the scene.
@@ -32,7 +32,7 @@ impl Intersect for Shape {
     /// Where on a triangle; a sphere needs no more than the distance.
     type Payload = Option<Barycentrics>;
 
-    fn intersect(&self, ray: &Ray) -> Option<(f32, Self::Payload)> {
+    fn intersect(&self, ray: &PreparedRay) -> Option<(f32, Self::Payload)> {
         match self {
             Self::Triangle(triangle) => {
                 let (t, barycentrics) = triangle.intersect(ray)?;

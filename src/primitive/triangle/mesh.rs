@@ -1,8 +1,8 @@
 //! The indexed triangle mesh, borrowed from its owner.
 
-use super::triangle::moller_trumbore;
-use super::{Barycentrics, Intersect, Primitive, Triangle};
-use crate::geometry::{Aabb, Ray, Scalar};
+use super::{Barycentrics, Corners, Triangle, Watertight};
+use crate::geometry::{Aabb, PreparedRay, Scalar};
+use crate::primitive::{Intersect, Primitive};
 use core::fmt;
 
 /// Triangles as corners by index, in buffers that stay the user's. Hit as [`Triangle`] is.
@@ -132,9 +132,18 @@ impl<S: Scalar> MeshTriangle<'_, S> {
     /// A copy with its corners' coordinates.
     #[inline(always)]
     pub fn triangle(&self) -> Triangle<S> {
-        // In range: `TriangleMesh::new` is the only maker.
-        let [a, b, c] = self.corners.map(|i| self.vertices[i as usize]);
+        let [a, b, c] = self.corners();
         Triangle { a, b, c }
+    }
+}
+
+impl<S: Scalar> Corners for MeshTriangle<'_, S> {
+    type Scalar = S;
+
+    #[inline(always)]
+    fn corners(&self) -> [[S; 3]; 3] {
+        // In range: `TriangleMesh::new` is the only maker.
+        self.corners.map(|i| self.vertices[i as usize])
     }
 }
 
@@ -143,7 +152,7 @@ impl<S: Scalar> Primitive for MeshTriangle<'_, S> {
 
     #[inline(always)]
     fn aabb(&self) -> Aabb<S> {
-        self.triangle().aabb()
+        Watertight(self).aabb()
     }
 }
 
@@ -151,9 +160,8 @@ impl<S: Scalar> Intersect for MeshTriangle<'_, S> {
     type Payload = Barycentrics<S>;
 
     #[inline(always)]
-    fn intersect(&self, ray: &Ray<S>) -> Option<(S, Barycentrics<S>)> {
-        let Triangle { a, b, c } = self.triangle();
-        moller_trumbore(a, b, c, ray)
+    fn intersect(&self, ray: &PreparedRay<S>) -> Option<(S, Barycentrics<S>)> {
+        Watertight(self).intersect(ray)
     }
 }
 

@@ -1,0 +1,42 @@
+//! The ray with what is computed from it once, for all boxes and primitives that it meets.
+
+use super::{Ray, Scalar, Shear, Slabs};
+use core::ops::Deref;
+
+/// A [`Ray`], and what is computed from it once for all the boxes and primitives that it meets: from
+/// [`Ray::prepare`]. Dereferences to the ray, so `ray.origin`, `ray.at(t)` and the rest are the same.
+///
+/// Queries prepare the ray that they are given. Only what the primitive's test asks for is computed:
+/// the rest is dropped by the compiler, unless the test is hidden behind a `dyn`.
+#[derive(Clone, Copy, Debug)]
+pub struct PreparedRay<S: Scalar = f32> {
+    ray: Ray<S>,
+    /// For boxes.
+    pub(crate) slabs: Slabs<S>,
+    /// For watertight triangles.
+    pub(crate) shear: Shear<S>,
+    /// For triangles in doubled precision.
+    pub(crate) wide_shear: Shear<S::Wide>,
+}
+
+impl<S: Scalar> PreparedRay<S> {
+    #[inline(always)]
+    pub(crate) fn new(ray: &Ray<S>) -> Self {
+        let widen = |point: [S; 3]| point.map(S::widen);
+        Self {
+            ray: *ray,
+            slabs: Slabs::new(ray),
+            shear: Shear::new(ray.origin, ray.direction),
+            wide_shear: Shear::new(widen(ray.origin), widen(ray.direction)),
+        }
+    }
+}
+
+impl<S: Scalar> Deref for PreparedRay<S> {
+    type Target = Ray<S>;
+
+    #[inline(always)]
+    fn deref(&self) -> &Ray<S> {
+        &self.ray
+    }
+}
