@@ -7,7 +7,8 @@ mod common {
 
 use bvhkit::heuristic::{BinnedSah, BuildNode, Heuristic, Median, Midpoint, Split, SweepSah};
 use bvhkit::{
-    Aabb, Axis, BuildError, Bvh, Intersect, MAX_DEPTH, PreparedRay, Primitive, Quality, Ray, Scalar, Sphere, reference,
+    Aabb, Axis, BuildError, Bvh, Intersect, MAX_DEPTH, PreparedRay, Primitive, Quality, Ray, Scalar, Sphere,
+    reference,
 };
 use common::heuristics;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -8,7 +8,9 @@ mod common {
     pub mod hostile;
 }
 
-use bvhkit::{Aabb, BuildError, Bvh, Flaw, Intersect, OnInvalid, PreparedRay, Primitive, Ray, Scalar, Sphere, Triangle};
+use bvhkit::{
+    Aabb, BuildError, Bvh, Flaw, Intersect, OnInvalid, PreparedRay, Primitive, Ray, Scalar, Sphere, Triangle,
+};
 use common::agreement::assert_agreement;
 use common::aimed::{aimed, soup, triangles};
 use common::answers::{Answers, Payload};

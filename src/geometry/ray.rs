@@ -76,6 +76,12 @@ impl<S: Scalar> Ray<S> {
         [ox + dx * t, oy + dy * t, oz + dz * t]
     }
 
+    /// Whether `t` lies in the ray's interval; false for NaN.
+    #[inline(always)]
+    pub fn includes(&self, t: S) -> bool {
+        t >= self.t_min && t <= self.t_max
+    }
+
     /// With what is computed once for all boxes and primitives, to call
     /// [`Intersect::intersect`](crate::Intersect::intersect) with. Queries do it themselves.
     #[inline(always)]

@@ -37,6 +37,11 @@ pub trait Scalar:
     /// The distance from 1 to the next larger number: twice the largest relative rounding error.
     const EPSILON: Self;
 
+    /// A power of two whose product with a length of about its root, and the inverses of both, are far
+    /// from the ends of the range.
+    #[doc(hidden)]
+    const LARGE_AREA: Self;
+
     /// glam's vector of this scalar, in which the arithmetic of primitives is done.
     #[doc(hidden)]
     type Vec3: Vector<Self>;
@@ -53,6 +58,9 @@ pub trait Scalar:
     fn turned_by(self, other: Self) -> Self;
     /// The square root, rounded correctly; NaN below zero.
     fn sqrt(self) -> Self;
+    /// The largest power of two that is no larger in size, if it is a normal number; else 1.
+    #[doc(hidden)]
+    fn power_of_two(self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// Finite and at least the smallest number of full precision in size.
@@ -108,7 +116,7 @@ mod sealed {
 }
 
 macro_rules! scalar {
-    ($scalar:ident, $vec3:ty, $lanes4:ty, $bits:ident, $signed:ident, $libm_sqrt:ident) => {
+    ($scalar:ident, $vec3:ty, $lanes4:ty, $bits:ident, $signed:ident, $libm_sqrt:ident, $large_area:expr) => {
         impl Scalar for $scalar {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -116,6 +124,7 @@ macro_rules! scalar {
             const INFINITY: Self = $scalar::INFINITY;
             const NEG_INFINITY: Self = $scalar::NEG_INFINITY;
             const EPSILON: Self = $scalar::EPSILON;
+            const LARGE_AREA: Self = $large_area;
             type Vec3 = $vec3;
             type Lanes4 = $lanes4;
             type Wide = f64;
@@ -135,6 +144,11 @@ macro_rules! scalar {
                 return $scalar::sqrt(self);
                 #[cfg(not(feature = "std"))]
                 return libm::$libm_sqrt(self);
+            }
+            #[inline(always)]
+            fn power_of_two(self) -> Self {
+                let exponent = Self::INFINITY.to_bits();
+                if self.is_normal() { Self::from_bits(self.to_bits() & exponent) } else { 1.0 }
             }
             #[inline(always)]
             fn is_finite(self) -> bool {
@@ -210,8 +224,8 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, glam::Vec3A, glam::Vec4, u32, i32, sqrtf);
-scalar!(f64, glam::DVec3, [f64; 4], u64, i64, sqrt);
+scalar!(f32, glam::Vec3A, glam::Vec4, u32, i32, sqrtf, f32::from_bits((127 + 60) << 23));
+scalar!(f64, glam::DVec3, [f64; 4], u64, i64, sqrt, f64::from_bits((1023 + 600) << 52));
 
 #[cfg(test)]
 mod tests {

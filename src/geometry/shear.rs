@@ -1,23 +1,24 @@
-//! The frame of a ray: what the ray looks like from behind.
+//! The frame of a ray: what a point looks like from behind the ray.
 
 use super::{Scalar, Vector};
 
-/// The frame in which the ray starts at the origin and runs along the third axis, by a permutation
-/// of the axes, a shift and a shear (Woop, Benthin and Wald, Watertight Ray/Triangle Intersection,
-/// JCGT 2013): no rotation, so that each coordinate takes but a few roundings.
+/// The frame in which a ray starts at the origin and runs along the third axis: a shift, a permutation
+/// of the axes and a shear (Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, JCGT 2013).
+/// No rotation, so a point's coordinates take but a few roundings.
 ///
-/// The axis on which the direction is largest becomes the third, so that no division is by less than
-/// the others' numerators and |x|, |y| <= 1.
+/// The axis on which the direction is largest becomes the third. The paper divides by the direction
+/// there; here the other two coordinates are multiplied by it instead, and are that much larger: of
+/// small whole numbers, and in `f64` of most `f32`, nothing is rounded then, and an edge is met exactly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shear<S> {
     origin: [S; 3],
     /// Which axes of space become the first, the second and the third.
     axes: [usize; 3],
-    /// How far along the first and the second the direction gets on one unit of the third, and what
-    /// t that unit is.
-    x: S,
-    y: S,
-    z: S,
+    /// The direction on these axes, scaled by a power of two to about 1, so that products with it
+    /// neither overflow nor underflow.
+    direction: [S; 3],
+    /// The direction on the third, unscaled.
+    forward: S,
 }
 
 impl<S: Scalar> Shear<S> {
@@ -32,12 +33,14 @@ impl<S: Scalar> Shear<S> {
         } else {
             [0, 1, 2]
         };
-        let [dx, dy, dz] = axes.map(|axis| direction[axis]);
-        Self { origin, axes, x: dx / dz, y: dy / dz, z: S::ONE / dz }
+        let direction = axes.map(|axis| direction[axis]);
+        let forward = direction[2];
+        let scale = (S::ONE / forward).power_of_two();
+        Self { origin, axes, direction: direction.map(|x| x * scale), forward }
     }
 
-    /// Three points in the ray's frame, one in each lane of the three vectors: their first, second and
-    /// third coordinates.
+    /// Three points in the ray's frame, one in each lane of the vectors: their first, second and third
+    /// coordinates.
     ///
     /// Each point's coordinates are a function of the point and the ray alone, whatever the lane and
     /// whatever the other two: triangles that share a corner agree about it.
@@ -48,12 +51,13 @@ impl<S: Scalar> Shear<S> {
             S::Vec3::from_array([a[axis], b[axis], c[axis]]) - S::Vec3::from_array([origin; 3])
         };
         let [x, y, z] = self.axes.map(lanes);
-        [x - z * self.x, y - z * self.y, z]
+        let [dx, dy, dz] = self.direction;
+        [x * dz - z * dx, y * dz - z * dy, z]
     }
 
     /// The t at a third coordinate.
     #[inline(always)]
     pub fn t(&self, z: S) -> S {
-        z * self.z
+        z / self.forward
     }
 }

@@ -12,10 +12,11 @@ use super::{Aabb, Ray, Scalar, max, min};
 /// far  = min over axes of (far plane  - origin) * inv_far
 /// ```
 ///
-/// `inv_near` and `inv_far` are 1 / direction, made smaller and larger by 3 epsilon: each side of
-/// the test makes at most four roundings of half an epsilon, so that, underflow aside, the interval
-/// contains the exact one (Ize 2013, who widens the far side alone; both are needed where a hit is compared with
-/// `near`). Behind the origin, at negative t, the two change places for a ray with a negative
+/// `inv_near` and `inv_far` are 1 / direction, made smaller and larger by 5 epsilon. Each side of
+/// the test makes at most four roundings of half an epsilon: underflow aside, the interval contains the
+/// exact one (Ize 2013, who widens the far side alone; both are needed where a hit is compared with
+/// `near`), and that of a box moved by another 2 epsilon of the distance to it, as corners are by the
+/// watertight triangle test. The padding takes no time: it is in the inverse. Behind the origin, at negative t, the two change places for a ray with a negative
 /// `t_min`; other rays never look there, and for them nothing is decided by the sign.
 ///
 /// On an axis with direction +0 or -0 the inverse is infinite: a plane strictly on one side gives
@@ -39,13 +40,13 @@ pub(crate) struct Slabs<S> {
 impl<S: Scalar> Slabs<S> {
     #[inline(always)]
     pub fn new(ray: &Ray<S>) -> Self {
-        let three = S::EPSILON + S::EPSILON + S::EPSILON;
+        let padding = S::from_f64(5.0) * S::EPSILON;
         let [dx, dy, dz] = ray.direction;
         let inv = [S::ONE / dx, S::ONE / dy, S::ONE / dz];
         Self {
             origin: ray.origin,
-            inv_near: inv.map(|i| i * (S::ONE - three)),
-            inv_far: inv.map(|i| i * (S::ONE + three)),
+            inv_near: inv.map(|i| i * (S::ONE - padding)),
+            inv_far: inv.map(|i| i * (S::ONE + padding)),
             negative: inv.map(|i| i < S::ZERO),
             t_min: ray.t_min,
         }

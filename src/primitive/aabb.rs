@@ -29,9 +29,8 @@ impl<S: Scalar> Intersect for Aabb<S> {
             near = max((first - ray.origin[axis]) * inv, near);
             far = min((last - ray.origin[axis]) * inv, far);
         }
-        let inside = |t: S| t >= ray.t_min && t <= ray.t_max;
-        let t = if inside(near) { near } else { far };
-        (near <= far && inside(t)).then_some((t, ()))
+        let t = if ray.includes(near) { near } else { far };
+        (near <= far && ray.includes(t)).then_some((t, ()))
     }
 }
 

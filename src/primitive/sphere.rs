@@ -77,9 +77,8 @@ impl<S: Scalar> Intersect for Sphere<S> {
         let q = if b < S::ZERO { b - root } else { b + root };
         let (t0, t1) = (c / q, q / a);
         let (near, far) = if t0 <= t1 { (t0, t1) } else { (t1, t0) };
-        let inside = |t: S| t >= ray.t_min && t <= ray.t_max;
-        let t = if inside(near) { near } else { far };
-        inside(t).then_some((t, ()))
+        let t = if ray.includes(near) { near } else { far };
+        ray.includes(t).then_some((t, ()))
     }
 }
 

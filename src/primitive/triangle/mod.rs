@@ -1,8 +1,8 @@
-//! The triangle, and the ray test shared with the mesh.
+//! The triangle, alone or in a mesh, and the modes of testing it.
 
+mod fast;
 mod mesh;
 mod modes;
-mod moller_trumbore;
 mod watertight;
 
 pub use mesh::{MeshError, MeshTriangle, TriangleMesh};
@@ -11,38 +11,47 @@ pub use modes::{Fast, Precise, Watertight};
 use super::{Intersect, Primitive};
 use crate::geometry::{Aabb, PreparedRay, Scalar};
 
-/// Three corners.
+/// Something with three corners, flat in between: what the modes [`Fast`], [`Watertight`] and [`Precise`]
+/// make a primitive of.
+///
+/// ```
+/// use bvhkit::{Bvh, Corners, Ray, Watertight};
+///
+/// struct Face { corners: [[f64; 3]; 3], material: u16 }
+///
+/// impl Corners for Face {
+///     type Scalar = f64;
+///     fn corners(&self) -> [[f64; 3]; 3] {
+///         self.corners
+///     }
+/// }
+///
+/// let face = Face { corners: [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], material: 7 };
+/// let bvh = Bvh::build([Watertight(face)])?;
+/// let hit = bvh.closest_hit(&Ray::new([0.25, 0.25, -1.0], [0.0, 0.0, 1.0])).unwrap();
+/// assert_eq!(bvh.primitive(hit.index).0.material, 7);
+/// # Ok::<(), bvhkit::BuildError>(())
+/// ```
 pub trait Corners {
-    /// The scalar.
+    /// `f32` or `f64`.
     type Scalar: Scalar;
-    /// The corners.
+
+    /// The corners where u = v = 0, u = 1 and v = 1 (see [`Barycentrics`]). Expected to be the same each time.
     fn corners(&self) -> [[Self::Scalar; 3]; 3];
 }
 
 impl<P: Corners + ?Sized> Corners for &P {
     type Scalar = P::Scalar;
+
     #[inline(always)]
     fn corners(&self) -> [[P::Scalar; 3]; 3] {
         (**self).corners()
     }
 }
 
-impl<S: Scalar> Corners for Triangle<S> {
-    type Scalar = S;
-    #[inline(always)]
-    fn corners(&self) -> [[S; 3]; 3] {
-        [self.a, self.b, self.c]
-    }
-}
-
 /// A triangle that owns its three corners. Both sides are hit.
 ///
-/// The ray test is that of Moller and Trumbore (Fast, Minimum Storage Ray/Triangle Intersection, 1997)
-/// without its epsilon, its products grouped around the normal: a triangle without area is never hit.
-/// Edges and corners count as inside as far as rounded arithmetic sees them; a ray at an edge that two
-/// triangles share may slip between them. Products of three lengths are computed: with directions
-/// of length 1, f32 is good for triangles and distances from about 1e-13 to 1e12, f64 from 1e-100 to
-/// 1e100. Beyond, t loses precision and hits are lost, in the tree and in the naive loop alike.
+/// By itself it is [`Watertight`]; [`Fast`] and [`Precise`] wrap it: `triangles.iter().map(Precise)`.
 ///
 /// ```
 /// use bvhkit::{Bvh, Ray, Triangle};
@@ -80,6 +89,15 @@ impl<S: Scalar> Triangle<S> {
     }
 }
 
+impl<S: Scalar> Corners for Triangle<S> {
+    type Scalar = S;
+
+    #[inline(always)]
+    fn corners(&self) -> [[S; 3]; 3] {
+        [self.a, self.b, self.c]
+    }
+}
+
 impl<S: Scalar> Primitive for Triangle<S> {
     type Scalar = S;
 
@@ -95,63 +113,5 @@ impl<S: Scalar> Intersect for Triangle<S> {
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay<S>) -> Option<(S, Barycentrics<S>)> {
         Watertight(self).intersect(ray)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::Ray;
-
-    const UNIT: Triangle = Triangle { a: [0.0, 0.0, 0.0], b: [1.0, 0.0, 0.0], c: [0.0, 1.0, 0.0] };
-
-    fn down(x: f32, y: f32) -> Ray {
-        Ray::new([x, y, 2.0], [0.0, 0.0, -1.0])
-    }
-
-    #[test]
-    fn edges_and_corners_are_inside_and_both_sides_are_hit() {
-        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5), (0.5, 0.0), (0.25, 0.25)] {
-            let (t, hit) = UNIT.intersect(&down(x, y).prepare()).unwrap();
-            assert_eq!((t, hit.u, hit.v), (2.0, x, y));
-            let up = Ray::new([x, y, -3.0], [0.0, 0.0, 1.0]);
-            assert_eq!(UNIT.intersect(&up.prepare()).unwrap().0, 3.0);
-        }
-        for (x, y) in [(-0.001, 0.5), (0.5, -0.001), (0.501, 0.5)] {
-            assert!(UNIT.intersect(&down(x, y).prepare()).is_none());
-        }
-    }
-
-    #[test]
-    fn the_interval_is_closed() {
-        let ray = down(0.25, 0.25);
-        assert!(UNIT.intersect(&ray.with_interval(2.0, 2.0).prepare()).is_some());
-        assert!(UNIT.intersect(&ray.with_interval(2.0f32.next_up(), 9.0).prepare()).is_none());
-        assert!(UNIT.intersect(&ray.with_interval(0.0, 2.0f32.next_down()).prepare()).is_none());
-    }
-
-    #[test]
-    fn a_coplanar_ray_and_a_triangle_without_area_miss() {
-        assert!(UNIT.intersect(&Ray::new([-1.0, 0.25, 0.0], [1.0, 0.0, 0.0]).prepare()).is_none());
-        let needle = Triangle::new([0.0f32; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]);
-        assert!(needle.intersect(&down(0.5, 0.0).prepare()).is_none());
-    }
-
-    #[test]
-    fn a_determinant_that_overflows_is_a_miss() {
-        let large = Triangle::new([-1e10f32, -1e10, -1e10], [1e10, -1e10, 1e10], [0.0, 1e10, 0.0]);
-        for (origin, length) in [([3e9, 0.0, 5e9], 1e18), ([9e9, 0.0, -5e9], 1e18), ([3e9, 0.0, -5e9], 2e18)]
-        {
-            assert_eq!(large.intersect(&Ray::new(origin, [0.0, 0.0, length]).prepare()), None, "{origin:?}");
-        }
-    }
-
-    #[test]
-    fn size_alone_rejects_nothing() {
-        for scale in [1e-12f32, 1e12] {
-            let scaled = Triangle::new(UNIT.a, UNIT.b.map(|x| x * scale), UNIT.c.map(|x| x * scale));
-            let ray = Ray::new([0.25 * scale, 0.25 * scale, 2.0 * scale], [0.0, 0.0, -1.0]);
-            assert!(scaled.intersect(&ray.prepare()).is_some(), "{scale}");
-        }
     }
 }

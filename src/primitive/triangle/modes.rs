@@ -1,22 +1,58 @@
 //! How exactly a triangle is tested: a choice by type.
 
-use super::moller_trumbore::moller_trumbore;
+use super::fast::fast;
 use super::watertight::{bounds, watertight};
 use super::{Barycentrics, Corners};
 use crate::geometry::{Aabb, PreparedRay, Scalar};
 use crate::primitive::{Intersect, Primitive};
 
-/// A triangle tested in the least arithmetic: rays may slip between two triangles at their edge, or hit
-/// beside it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A triangle tested with the least arithmetic.
+///
+/// A ray aimed at a corner, or at an edge of a sliver, may slip between triangles that meet there, or
+/// be told of a hit a rounding beside one. Products of three lengths are computed: coordinates and
+/// distances are good from about 1e-12 to 1e12 in `f32`, 1e-100 to 1e100 in `f64`; beyond, hits are lost.
+/// The README has the rates, and what is gained by it.
+///
+/// ```
+/// use bvhkit::{Bvh, Fast, Triangle};
+/// let triangles = [Triangle::new([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])];
+/// let bvh: Bvh<Fast<&Triangle>> = Bvh::build(triangles.iter().map(Fast))?;
+/// # Ok::<(), bvhkit::BuildError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fast<P>(pub P);
 
-/// A triangle tested so that no ray slips between it and its neighbours.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A triangle tested so that no ray slips between it and its neighbours: what [`Triangle`](crate::Triangle)
+/// and [`MeshTriangle`](crate::MeshTriangle) are by themselves.
+///
+/// A ray from inside a closed mesh, whose triangles share the very bits of their corners, hits it: at edges
+/// and corners too, sometimes the neighbour of the triangle that exact arithmetic would name. A hit
+/// lies on the triangle up to a few roundings of the distances to its corners. The
+/// triangle's box is a few roundings larger than its corners': that is part of the proof, which is in
+/// the source (`primitive/triangle/watertight.rs`).
+///
+/// Good for coordinates and distances from about 1e-30 to 1e37 in `f32`, and 1e-100 to 1e100 in `f64`,
+/// and directions of a length in that range. A triangle with two equal corners is never hit, nor is
+/// one whose corners lie on a line, but for rays that pass within those roundings of that line.
+///
+/// Wraps any triangle of your own that tells its [`Corners`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Watertight<P>(pub P);
 
-/// A triangle in `f32` tested in `f64`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A triangle with `f32` corners, tested in `f64`: watertight, and t, weights and the decision between
+/// neighbours are those of exact arithmetic but for rare roundings of `f64`.
+///
+/// Good for all coordinates from about 1e-30 to 1e37. The boxes are in `f32`, as for [`Watertight`].
+///
+/// ```
+/// use bvhkit::{Bvh, Precise, Ray, TriangleMesh};
+/// let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = TriangleMesh::new(&vertices, &[[0, 1, 2], [0, 2, 3]])?;
+/// let bvh = Bvh::build(mesh.iter().map(Precise))?;
+/// assert!(bvh.any_hit(&Ray::new([0.5, 0.5, -1.0], [0.0, 0.0, 1.0])));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Precise<P>(pub P);
 
 impl<P: Corners> Primitive for Fast<P> {
@@ -33,7 +69,7 @@ impl<P: Corners> Intersect for Fast<P> {
 
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, Barycentrics<P::Scalar>)> {
-        moller_trumbore(self.0.corners(), ray)
+        fast(self.0.corners(), &ray.shear).filter(|&(t, _)| ray.includes(t))
     }
 }
 
@@ -51,7 +87,7 @@ impl<P: Corners> Intersect for Watertight<P> {
 
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, Barycentrics<P::Scalar>)> {
-        watertight(self.0.corners(), ray, &ray.shear)
+        watertight(self.0.corners(), &ray.shear).filter(|&(t, _)| ray.includes(t))
     }
 }
 
@@ -70,14 +106,121 @@ impl<P: Corners<Scalar = f32>> Intersect for Precise<P> {
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay) -> Option<(f32, Barycentrics)> {
         let corners = self.0.corners().map(|corner| corner.map(Scalar::widen));
-        let wide = crate::geometry::Ray {
-            origin: ray.origin.map(Scalar::widen),
-            direction: ray.direction.map(Scalar::widen),
-            t_min: f64::NEG_INFINITY,
-            t_max: f64::INFINITY,
-        };
-        let (t, Barycentrics { u, v }) = watertight(corners, &wide, &ray.wide_shear)?;
-        let t = t as f32;
-        (t >= ray.t_min && t <= ray.t_max).then_some((t, Barycentrics { u: u as f32, v: v as f32 }))
+        let (t, Barycentrics { u, v }) = watertight(corners, &ray.wide_shear)?;
+        let (t, u, v) = (t as f32, u as f32, v as f32);
+        ray.includes(t).then_some((t, Barycentrics { u, v }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Ray, Triangle};
+
+    const UNIT: Triangle = Triangle { a: [0.0, 0.0, 0.0], b: [1.0, 0.0, 0.0], c: [0.0, 1.0, 0.0] };
+
+    /// The answers of the modes, `f64` data included, with all they hold in `f32`.
+    fn answers(triangle: Triangle, ray: Ray) -> [Option<(f32, f32, f32)>; 4] {
+        let prepared = ray.prepare();
+        let flat = |(t, at): (f32, Barycentrics)| (t, at.u, at.v);
+        let double = |point: [f32; 3]| point.map(f64::from);
+        let wide = Triangle::new(double(triangle.a), double(triangle.b), double(triangle.c));
+        let wide_ray = Ray::new(double(ray.origin), double(ray.direction))
+            .with_interval(f64::from(ray.t_min), f64::from(ray.t_max));
+        let wide_hit = wide.intersect(&wide_ray.prepare());
+        [
+            Fast(triangle).intersect(&prepared).map(flat),
+            Watertight(triangle).intersect(&prepared).map(flat),
+            Precise(triangle).intersect(&prepared).map(flat),
+            wide_hit.map(|(t, at)| (t as f32, at.u as f32, at.v as f32)),
+        ]
+    }
+
+    fn down(x: f32, y: f32) -> Ray {
+        Ray::new([x, y, 2.0], [0.0, 0.0, -1.0])
+    }
+
+    #[test]
+    fn edges_and_corners_are_inside_and_both_sides_are_hit() {
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5), (0.5, 0.0), (0.25, 0.25)] {
+            // A fast hit at an edge has the same t here, since nothing is rounded.
+            assert_eq!(answers(UNIT, down(x, y)), [Some((2.0, x, y)); 4]);
+            let up = Ray::new([x, y, -3.0], [0.0, 0.0, 1.0]);
+            assert_eq!(answers(UNIT, up), [Some((3.0, x, y)); 4]);
+        }
+        for (x, y) in [(-0.001, 0.5), (0.5, -0.001), (0.501, 0.5)] {
+            assert_eq!(answers(UNIT, down(x, y)), [None; 4]);
+        }
+    }
+
+    #[test]
+    fn the_interval_is_closed() {
+        let ray = down(0.25, 0.25);
+        assert!(answers(UNIT, ray.with_interval(2.0, 2.0)).iter().all(Option::is_some));
+        for ray in [ray.with_interval(2.0f32.next_up(), 9.0), ray.with_interval(0.0, 2.0f32.next_down())] {
+            assert_eq!(answers(UNIT, ray), [None; 4]);
+        }
+    }
+
+    #[test]
+    fn a_coplanar_ray_and_a_triangle_without_area_miss() {
+        assert_eq!(answers(UNIT, Ray::new([-1.0, 0.25, 0.0], [1.0, 0.0, 0.0])), [None; 4]);
+        let needle = Triangle::new([0.0f32; 3], [1.0, 0.0, 1.0], [2.0, 0.0, 2.0]);
+        assert_eq!(answers(needle, down(0.5, 0.0)), [None; 4]);
+        // Equal corners look equal, however the ray is rounded.
+        let (p, q) = ([0.1f32, 0.7, 0.3], [1.1, -0.2, 0.9]);
+        for corners in [[p, p, q], [p, q, p], [q, p, p], [p, p, p]] {
+            for along in [0.0f32, 0.3, 1.0] {
+                let origin = [0.37, 0.11, -1.7];
+                let direction = [0, 1, 2].map(|k| p[k] + along * (q[k] - p[k]) - origin[k]);
+                let [a, b, c] = corners;
+                assert_eq!(answers(Triangle::new(a, b, c), Ray::new(origin, direction)), [None; 4]);
+            }
+        }
+    }
+
+    /// Inside, at an edge, at a corner, outside, with directions of any length.
+    #[test]
+    fn size_alone_changes_nothing_within_each_modes_range() {
+        for exponent in -36..=36 {
+            for length in [1e-30f32, 1e-3, 1.0, 1e30] {
+                let scale = 10f32.powi(exponent);
+                let scaled = |point: [f32; 3]| point.map(|x| x * scale);
+                let triangle = Triangle::new(scaled(UNIT.a), scaled(UNIT.b), scaled(UNIT.c));
+                for (x, y) in [(0.25, 0.25), (0.5, 0.0), (0.0, 0.0), (0.25, -0.25)] {
+                    let ray = Ray::new(scaled([x, y, 2.0]), [0.0, 0.0, -length]);
+                    let [fast, rest @ ..] = answers(triangle, ray);
+                    let near = |hit: Option<(f32, f32, f32)>| match hit {
+                        None => y < 0.0,
+                        Some((t, u, v)) => {
+                            let expected = 2.0 * scale / length;
+                            y >= 0.0
+                                && (t - expected).abs() <= 1e-6 * expected
+                                && (u - x).abs().max((v - y).abs()) < 1e-6
+                        }
+                    };
+                    let expected = 2.0 * scale / length;
+                    if expected.is_normal() {
+                        assert!(rest.into_iter().all(near), "{exponent} {length}: {rest:?}");
+                        assert!(exponent.abs() > 11 || near(fast), "{exponent} {length}: {fast:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_watertight_box_is_a_little_larger_and_valid_for_all_finite_corners() {
+        let triangle = Triangle::new([1e6f32, 1.0, 0.5], [1e6, 2.0, 0.5], [1e6, 1.0, 0.5]);
+        let (exact, padded) = (Fast(triangle).aabb(), triangle.aabb());
+        for axis in 0..3 {
+            assert!(padded.min[axis] < exact.min[axis] && exact.max[axis] < padded.max[axis]);
+            assert!(padded.extent()[axis] - exact.extent()[axis] < 1e-6 * (exact.max[axis] + 1.0));
+        }
+        let largest = Triangle::new([f32::MAX; 3], [f32::MIN; 3], [0.0, 1.0, f32::MAX]);
+        assert!(largest.aabb().is_valid());
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            assert!(!Triangle::new([1.0, bad, 0.0], [1.0f32; 3], [2.0; 3]).aabb().is_valid());
+        }
     }
 }
