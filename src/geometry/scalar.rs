@@ -2,6 +2,7 @@
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+use glam::Vec3Swizzles;
 
 /// A coordinate: `f32` or `f64`. Sealed; a bound to write generic code with.
 ///
@@ -212,9 +213,11 @@ macro_rules! scalar {
             fn dot(self, other: Self) -> $scalar {
                 <$vec3>::dot(self, other)
             }
+            // glam's own fuses where the target has it: then the two products are rounded differently,
+            // and the cross product of b and a is not that of a and b with its signs turned.
             #[inline(always)]
             fn cross(self, other: Self) -> Self {
-                <$vec3>::cross(self, other)
+                (self.zxy() * other - self * other.zxy()).zxy()
             }
             #[inline(always)]
             fn to_array(self) -> [$scalar; 3] {
@@ -241,6 +244,22 @@ mod tests {
         for pair in doubles.windows(2) {
             assert!(pair[0].to_ordered_bits() < pair[1].to_ordered_bits(), "{pair:?}");
         }
+    }
+
+    /// Fails where the build has fused multiplication and addition, and anything uses it.
+    #[test]
+    fn cross_products_turn_their_signs_exactly_and_dot_products_round_each_step() {
+        // Two products that differ by less than a rounding.
+        let (a, b) = ([1.0f32 + f32::EPSILON, 3.0, 0.7], [3.0f32 * (1.0 + f32::EPSILON), 9.0, 2.1]);
+        fn check<S: Scalar>(a: [S; 3], b: [S; 3]) {
+            let [x, y] = [a, b].map(S::Vec3::from_array);
+            let products = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
+            assert_eq!(x.cross(y).to_array(), [products(1, 2), products(2, 0), products(0, 1)]);
+            assert_eq!(y.cross(x).to_array(), x.cross(y).to_array().map(|x| -x));
+            assert_eq!(x.dot(y), a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+        }
+        check(a, b);
+        check(a.map(|x| f64::from(x) / 3.0), b.map(|x| f64::from(x) / 7.0));
     }
 
     #[test]
