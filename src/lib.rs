@@ -79,8 +79,8 @@ pub use builder::{BuildError, Builder, OnInvalid, Quality};
 pub use bvh::Bvh;
 pub use geometry::{Aabb, Axis, PreparedRay, Ray, RayError, Scalar};
 pub use primitive::{
-    Barycentrics, Corners, Fast, Intersect, MeshError, MeshTriangle, Precise, Primitive, Sphere, Triangle,
-    TriangleMesh, Watertight,
+    Barycentrics, Corners, Fast, Intersect, MeshError, MeshTriangle, Precise, Primitive, Sphere,
+    SurfacePoint, Triangle, TriangleMesh, Watertight,
 };
 pub use query::{Counters, Hit, Hits, Recorder};
 pub use tree::{InvariantError, LeafSizes, MAX_DEPTH, Tree, TreeReport};

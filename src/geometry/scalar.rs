@@ -38,6 +38,9 @@ pub trait Scalar:
     /// The distance from 1 to the next larger number: twice the largest relative rounding error.
     const EPSILON: Self;
 
+    /// No scalar is wider.
+    #[doc(hidden)]
+    const IS_WIDEST: bool;
     /// A power of two whose product with a length of about its root, and the inverses of both, are far
     /// from the ends of the range.
     #[doc(hidden)]
@@ -125,6 +128,7 @@ macro_rules! scalar {
             const INFINITY: Self = $scalar::INFINITY;
             const NEG_INFINITY: Self = $scalar::NEG_INFINITY;
             const EPSILON: Self = $scalar::EPSILON;
+            const IS_WIDEST: bool = size_of::<Self>() == size_of::<f64>();
             const LARGE_AREA: Self = $large_area;
             type Vec3 = $vec3;
             type Lanes4 = $lanes4;

@@ -2,9 +2,11 @@
 
 mod aabb;
 mod sphere;
+mod surface_point;
 mod triangle;
 
 pub use sphere::Sphere;
+pub use surface_point::SurfacePoint;
 pub use triangle::{
     Barycentrics, Corners, Fast, MeshError, MeshTriangle, Precise, Triangle, TriangleMesh, Watertight,
 };

@@ -1,6 +1,6 @@
 //! The sphere.
 
-use super::{Intersect, Primitive};
+use super::{Intersect, Primitive, SurfacePoint};
 use crate::geometry::{Aabb, PreparedRay, Scalar, Vector};
 
 /// A sphere's surface: a ray from inside hits it on the way out.
@@ -25,6 +25,11 @@ impl<S: Scalar> Sphere<S> {
     #[inline(always)]
     pub fn new(center: impl Into<[S; 3]>, radius: S) -> Self {
         Self { center: center.into(), radius }
+    }
+
+    /// The point of the sphere nearest to `position`, which is `ray.at(hit.t)`, to start rays from.
+    pub fn surface_point(&self, position: impl Into<[S; 3]>) -> SurfacePoint<S> {
+        SurfacePoint::of_sphere(self.center, self.radius, position.into())
     }
 }
 

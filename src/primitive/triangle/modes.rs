@@ -1,6 +1,6 @@
 //! How exactly a triangle is tested: a choice by type.
 
-use super::fast::fast;
+use super::sheared::sheared;
 use super::watertight::{bounds, watertight};
 use super::{Barycentrics, Corners};
 use crate::geometry::{Aabb, PreparedRay, Scalar};
@@ -69,7 +69,7 @@ impl<P: Corners> Intersect for Fast<P> {
 
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, Barycentrics<P::Scalar>)> {
-        fast(self.0.corners(), &ray.shear).filter(|&(t, _)| ray.includes(t))
+        sheared(self.0.corners(), &ray.shear).filter(|&(t, _)| ray.includes(t))
     }
 }
 
@@ -87,7 +87,7 @@ impl<P: Corners> Intersect for Watertight<P> {
 
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, Barycentrics<P::Scalar>)> {
-        watertight(self.0.corners(), &ray.shear).filter(|&(t, _)| ray.includes(t))
+        watertight(self.0.corners(), ray, &ray.shear).filter(|&(t, _)| ray.includes(t))
     }
 }
 
@@ -106,7 +106,7 @@ impl<P: Corners<Scalar = f32>> Intersect for Precise<P> {
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay) -> Option<(f32, Barycentrics)> {
         let corners = self.0.corners().map(|corner| corner.map(Scalar::widen));
-        let (t, Barycentrics { u, v }) = watertight(corners, &ray.wide_shear)?;
+        let (t, Barycentrics { u, v }) = sheared(corners, &ray.wide_shear)?;
         let (t, u, v) = (t as f32, u as f32, v as f32);
         ray.includes(t).then_some((t, Barycentrics { u, v }))
     }

@@ -1,47 +1,46 @@
 //! The watertight ray test, and the box that goes with it.
+//!
+//! # Why no ray slips through
+//!
+//! 1. A corner's place in the ray's frame is rounded, but alike for all triangles that share the corner:
+//!    what the ray meets is some closed mesh of flat triangles, a little off the given one.
+//! 2. The side of an edge is the sign of a difference of two products. Rounding is monotone: the sign of
+//!    the rounded difference is that of the exact one, or zero. With zero counted as inside, every
+//!    triangle of the mesh of 1 that holds the ray's point is hit; and in a closed mesh around the ray's
+//!    origin one that has an area does, since those without add nothing to what the others cover.
+//! 3. Its own box is met (see [`bounds`]), so the tree and the naive loop both accept it.
 
 use super::Barycentrics;
-use crate::geometry::{Aabb, Scalar, Shear, Vector, max, min};
+use super::sheared::{is_outside, sheared};
+use crate::geometry::{Aabb, Ray, Scalar, Shear, Vector, max, min};
 
-/// The ray-triangle test of Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013), for
-/// the corners in the ray's frame: seen along the ray, the triangle holds the ray's point if that is on
-/// the same side of all three edges.
+/// As [`sheared`], but what rounding leaves open is computed once more in the wide scalar: a difference that is
+/// zero, as Woop, Benthin and Wald do; an area out of the range; and t where its sign is in doubt, so that a
+/// ray which starts a few roundings from a triangle is told on which side it does.
 ///
-/// # Why no ray slips through
-///
-/// 1. A corner's place in the frame is rounded, but alike for all triangles that share the corner: what
-///    the ray looks at is some closed mesh of flat triangles, a little off the given one.
-/// 2. The side of an edge is the sign of a difference of two products. Rounding is monotone: the sign of
-///    the rounded difference is that of the exact one, or zero. With zero counted as inside, every
-///    triangle of the mesh of 1 that holds the point is hit; and in a closed mesh around the ray's
-///    origin one that has an area does, since those without add nothing to what the others cover.
-/// 3. Its own box is met (see [`bounds`]), so the tree and the naive loop both accept it.
-///
-/// Where a difference is zero, or the area is too large or small for products of three lengths, all is
-/// computed once more in the wide scalar, as in the paper: in f64 products of two f32 are exact, and those of
-/// three in range. Both sides are hit.
+/// For `f64` there is none wider.
 #[inline(always)]
-pub(super) fn watertight<S: Scalar>(corners: [[S; 3]; 3], shear: &Shear<S>) -> Option<(S, Barycentrics<S>)> {
+pub(super) fn watertight<S: Scalar>(
+    corners: [[S; 3]; 3],
+    ray: &Ray<S>,
+    shear: &Shear<S>,
+) -> Option<(S, Barycentrics<S>)> {
+    if S::IS_WIDEST {
+        return sheared(corners, shear);
+    }
     let [x, y, z] = shear.apply(corners);
     let weights = x.cross(y);
     let [a, b, c] = weights.to_array();
     if is_outside([a, b, c]) {
         return None;
     }
-    let area = a + b + c;
-    let is_settled = a != S::ZERO && b != S::ZERO && c != S::ZERO && is_ordinary(area);
-    let (depth, at) = if is_settled {
-        (weights.dot(z) / area, Barycentrics { u: b / area, v: c / area })
+    let (area, volume) = (a + b + c, weights.dot(z));
+    let is_inside_for_sure = a != S::ZERO && b != S::ZERO && c != S::ZERO && is_ordinary(area);
+    if is_inside_for_sure && (is_ahead(z.to_array()) || volume.abs() > doubt(x, y, z)) {
+        Some((shear.t(volume / area), Barycentrics { u: b / area, v: c / area }))
     } else {
-        settle(x.to_array(), y.to_array(), z.to_array())?
-    };
-    Some((shear.t(depth), at))
-}
-
-/// On different sides of two edges. A NaN may hide a side, but does not make one up.
-#[inline(always)]
-pub(super) fn is_outside<S: Scalar>([a, b, c]: [S; 3]) -> bool {
-    min(min(a, b), c) < S::ZERO && max(max(a, b), c) > S::ZERO
+        settle([x, y].map(S::Vec3::to_array), corners, [ray.origin, ray.direction])
+    }
 }
 
 /// Neither so large nor so small that its product with a length may leave the range.
@@ -51,36 +50,76 @@ fn is_ordinary<S: Scalar>(area: S) -> bool {
     area > S::ONE / S::LARGE_AREA && area < S::LARGE_AREA
 }
 
-/// The depth and the weights at the origin of the plane, computed in the wide scalar; none if that is
-/// outside, or if the triangle, seen from there, has no area.
+/// All corners are, and so the hit is.
+#[inline(always)]
+fn is_ahead<S: Scalar>([a, b, c]: [S; 3]) -> bool {
+    min(min(a, b), c) > S::ZERO
+}
+
+/// More than the rounding error of the volume (x cross y) . z: x and y are each off by up to 2 epsilon times
+/// the sum of themselves and z, and each product by some more.
+#[inline(always)]
+fn doubt<S: Scalar>(x: S::Vec3, y: S::Vec3, z: S::Vec3) -> S {
+    let largest = |v: S::Vec3| {
+        let [a, b, c] = v.to_array();
+        max(max(a.abs(), b.abs()), c.abs())
+    };
+    let (x, y, z) = (largest(x), largest(y), largest(z));
+    S::from_f64(32.0) * S::EPSILON * z * (z * (x + y) + x * y)
+}
+
+/// The hit of a triangle whose corners are at `x` and `y` in the ray's frame, computed in the wide scalar; none
+/// if the ray passes outside, or sees no area.
+///
+/// The triangle is where the frame has it, for its neighbours' sake; but t is taken from the corners
+/// themselves, as far as it lies between theirs.
 #[cold]
 #[inline(never)]
-fn settle<S: Scalar>(x: [S; 3], y: [S; 3], z: [S; 3]) -> Option<(S, Barycentrics<S>)> {
-    let [[ax, bx, cx], [ay, by, cy], [az, bz, cz]] = [x, y, z].map(|lanes| lanes.map(S::widen));
-    let [a, b, c] = [bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx];
+fn settle<S: Scalar>(
+    xy: [[S; 3]; 2],
+    corners: [[S; 3]; 3],
+    ray: [[S; 3]; 2],
+) -> Option<(S, Barycentrics<S>)> {
+    let widen = |point: [S; 3]| point.map(S::widen);
+    let [x, y] = xy.map(|lanes| WideVec3::<S>::from_array(widen(lanes)));
+    let [a, b, c] = x.cross(y).to_array();
     let area = a + b + c;
-    let is_hit = !is_outside([a, b, c]) && area != S::Wide::ZERO && area.is_finite();
-    is_hit.then(|| {
-        let depth = (a * az + b * bz + c * cz) / area;
-        (S::narrow(depth), Barycentrics { u: S::narrow(b / area), v: S::narrow(c / area) })
-    })
+    if is_outside([a, b, c]) || area == S::Wide::ZERO || !area.is_finite() {
+        return None;
+    }
+    let [origin, direction] = ray.map(widen);
+    let shear = Shear::new(origin, direction);
+    let t = shear.t(plane_depth(corners.map(widen), &shear));
+    Some((S::narrow(t), Barycentrics { u: S::narrow(b / area), v: S::narrow(c / area) }))
+}
+
+type WideVec3<S> = <<S as Scalar>::Wide as Scalar>::Vec3;
+
+/// The third coordinate at which the ray meets the triangle's plane, but no farther than the corners'.
+fn plane_depth<S: Scalar>(corners: [[S; 3]; 3], shear: &Shear<S>) -> S {
+    let [x, y, z] = shear.apply(corners);
+    let weights = x.cross(y);
+    let [a, b, c] = weights.to_array();
+    let depth = weights.dot(z) / (a + b + c);
+    let [a, b, c] = z.to_array();
+    // A ray in the plane makes a NaN, which is left out.
+    min(max(depth, min(min(a, b), c)), max(max(a, b), c))
 }
 
 /// The box of a triangle, larger than its corners' by 4 epsilon of its largest extent and one rounding
-/// of the coordinate: what the rounded triangle of [`watertight`] may reach out of it.
+/// of the coordinate: what the triangle in the ray's frame may reach out of it.
 ///
-/// Let u be half an epsilon, s the largest extent, h the point on the ray (relative to its origin) that the test
+/// Let u be half an epsilon, s the largest extent, h the point of the ray (relative to its origin) that the test
 /// calls hit. Along an axis x that is not the ray's largest, a corner A has its place x dz - z dx rounded by up to
 /// 2 u |A.x dz| + 2 u |A.z dx| + u |x dz - z dx|: in units of length, since |A.x| <= |h.x| + s, and the same of
-/// A.z dx / dz, by no more than 4 u |h.x| + 6 u s. The second part is less than 4 epsilon s, the first is covered by the
-/// padding of the slab test (see `Slabs`): so the ray meets the box. Underflow aside: the least coordinates
-/// that count must be some 2^24 times the smallest normal number.
+/// A.z dx / dz, by no more than 4 u |h.x| + 6 u s. The second part is less than 4 epsilon s, the first is covered by
+/// the padding of the slab test (see `Slabs`): so the ray meets the box. Underflow aside: coordinates must be some
+/// 2^24 times the smallest normal number, or zero.
 #[inline(always)]
 pub(super) fn bounds<S: Scalar>(corners: [[S; 3]; 3]) -> Aabb<S> {
     let exact = Aabb::of_points(corners);
-    let two = S::ONE + S::ONE;
     let [x, y, z] = exact.extent();
-    let margin = max(max(x, y), z) * (two * two * S::EPSILON);
+    let margin = max(max(x, y), z) * (S::from_f64(4.0) * S::EPSILON);
     let mut padded = exact;
     for axis in 0..3 {
         let outward = |x: S| margin + S::EPSILON * x.abs();
