@@ -31,7 +31,8 @@
 //!   primitives.
 //! - What it answers: [`Bvh::closest_hit`], [`Bvh::any_hit`], [`Bvh::hits`], each with
 //!   [`Counters`] on request.
-//! - What to test it, or your own, against: [`reference`](mod@reference).
+//! - What to test it, or your own, against: [`reference`](mod@reference); with the feature `exact`,
+//!   the answer of exact arithmetic too.
 //! - What it looks like: [`Bvh::report`], [`Bvh::check`].
 //!
 //! # What is promised
@@ -51,6 +52,7 @@
 //!
 //! - `rayon` (default): parallel builds; the tree is the same with and without.
 //! - `std` (default): the standard library's square root. Without it the crate is `no_std` + alloc.
+//! - `exact`: the exact oracle, `reference::exact`.
 #![no_std]
 #![deny(missing_docs)]
 

@@ -5,6 +5,8 @@
 //! of [`Bvh`](crate::Bvh) (see [`Intersect::intersect`]), and answer by the smallest (t, index), so
 //! a tree of this crate gives the same t, bit for bit, and the same index.
 //!
+//! With the feature `exact`, the module `exact` answers for triangles without any rounding.
+//!
 //! An invalid primitive (see [`Flaw`](crate::Flaw)) is not hit, as in a tree that was told to skip
 //! such.
 //!
@@ -17,6 +19,9 @@
 //! assert_eq!(bvh.hits(&ray).collect::<Vec<_>>(), reference::hits(&spheres, &ray));
 //! # Ok::<(), bvhkit::BuildError>(())
 //! ```
+
+#[cfg(feature = "exact")]
+pub mod exact;
 
 use crate::build::PrimRef;
 use crate::geometry::Ray;
