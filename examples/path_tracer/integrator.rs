@@ -5,7 +5,7 @@
 
 use std::f32::consts::FRAC_1_PI;
 
-use bvhkit::{Barycentrics, Primitive, Ray, Triangle};
+use bvhkit::{Barycentrics, Ray, SurfacePoint, Triangle};
 use glam::Vec3;
 use rand::RngExt;
 use rand_pcg::Pcg32;
@@ -22,14 +22,11 @@ pub struct Integrator<'a> {
     scene: &'a Scene,
     lights: Lights<'a>,
     max_bounces: u32,
-    /// How far from the surface new rays start.
-    offset: f32,
 }
 
 impl<'a> Integrator<'a> {
     pub fn new(scene: &'a Scene, max_bounces: u32) -> Self {
-        let offset = spawn_offset(scene);
-        Self { scene, lights: Lights::new(scene), max_bounces, offset }
+        Self { scene, lights: Lights::new(scene), max_bounces }
     }
 
     /// The radiance that arrives at the origin of `ray`: an estimate by one path.
@@ -87,7 +84,7 @@ impl<'a> Integrator<'a> {
                 }
                 throughput /= survival;
             }
-            ray = Ray::new(self.spawn(&vertex, direction), direction);
+            ray = vertex.surface.spawn(direction);
         }
         radiance
     }
@@ -95,7 +92,8 @@ impl<'a> Integrator<'a> {
     /// The light that reaches a diffuse vertex straight from the lights, as reflected by a white
     /// surface.
     fn direct(&self, vertex: &Vertex, caster: &mut Caster<'_>, rng: &mut Pcg32) -> Vec3 {
-        let start = vertex.smooth_point + self.offset * vertex.geometric;
+        let start = SurfacePoint { position: vertex.smooth_point.into(), ..vertex.surface };
+        let start = Vec3::from(start.spawn(vertex.geometric).origin);
         let mut irradiance = Vec3::ZERO;
         for sample in self.lights.samples(start, rng) {
             let cos = sample.direction.dot(vertex.shading);
@@ -113,29 +111,23 @@ impl<'a> Integrator<'a> {
     }
 
     fn vertex(&self, ray: &Ray, hit: &Hit) -> Vertex {
-        let point = Vec3::from(ray.at(hit.t));
-        let direction = Vec3::from(ray.direction);
-        let outward = self.scene.shapes[hit.index].normal(point);
-        let front = direction.dot(outward) < 0.0;
+        let shape = &self.scene.shapes[hit.index];
+        let surface = shape.surface_point(ray, hit.t, hit.payload);
+        let point = Vec3::from(surface.position);
+        let outward = shape.normal(point);
+        let front = Vec3::from(ray.direction).dot(outward) < 0.0;
         let geometric = if front { outward } else { -outward };
-        let flat = Vertex { point, smooth_point: point, geometric, shading: geometric, front };
-        match (self.scene.shapes[hit.index], self.scene.surfaces[hit.index].normals, hit.payload) {
+        let flat = Vertex { surface, smooth_point: point, geometric, shading: geometric, front };
+        match (*shape, self.scene.surfaces[hit.index].normals, hit.payload) {
             (Shape::Triangle(triangle), Some(normals), Some(at)) => flat.smoothed(&triangle, normals, at),
             _ => flat,
         }
-    }
-
-    /// The origin for a ray that leaves the vertex in `direction`: a little off the surface, so
-    /// that it does not meet the surface again.
-    fn spawn(&self, vertex: &Vertex, direction: Vec3) -> Vec3 {
-        let side = if direction.dot(vertex.geometric) < 0.0 { -1.0 } else { 1.0 };
-        vertex.point + side * self.offset * vertex.geometric
     }
 }
 
 /// Where a path meets a surface.
 struct Vertex {
-    point: Vec3,
+    surface: SurfacePoint,
     /// Where shadow rays start.
     smooth_point: Vec3,
     /// The geometric and the shading normal, on the side that the ray came from.
@@ -156,26 +148,17 @@ impl Vertex {
         let corners = [triangle.a, triangle.b, triangle.c].map(Vec3::from);
         let mut shading = Vec3::ZERO;
         let mut lift = Vec3::ZERO;
+        let point = Vec3::from(self.surface.position);
         for ((weight, corner), normal) in weights.into_iter().zip(corners).zip(normals) {
             // Near a silhouette and on the inside, normals face away from the ray.
             let normal = if normal.dot(self.geometric) < 0.0 { -normal } else { normal };
             shading += weight * normal;
-            let below = (self.point - corner).dot(normal).min(0.0);
+            let below = (point - corner).dot(normal).min(0.0);
             lift -= weight * below * normal;
         }
         let shading = shading.normalize_or(self.geometric);
-        Self { smooth_point: self.point + lift, shading, ..self }
+        Self { smooth_point: point + lift, shading, ..self }
     }
-}
-
-/// How far off a surface a ray must start to miss it: some hundred times the rounding error of the
-/// scene's largest coordinate.
-fn spawn_offset(scene: &Scene) -> f32 {
-    let coordinates = scene.shapes.iter().map(|shape| {
-        let aabb = shape.aabb();
-        Vec3::from(aabb.min).abs().max(Vec3::from(aabb.max).abs()).max_element()
-    });
-    100.0 * f32::EPSILON * coordinates.fold(0.0, f32::max)
 }
 
 /// Reflects or refracts at a smooth dielectric, each as often as Fresnel's equations give it light.

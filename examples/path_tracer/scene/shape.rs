@@ -1,6 +1,8 @@
 //! The primitive of the path tracer: a triangle or an analytic sphere, side by side in one tree.
 
-use bvhkit::{Aabb, Barycentrics, Intersect, PreparedRay, Primitive, Sphere, Triangle};
+use bvhkit::{
+    Aabb, Barycentrics, Corners, Intersect, PreparedRay, Primitive, Ray, Sphere, SurfacePoint, Triangle,
+};
 use glam::Vec3;
 
 /// One primitive of the scene.
@@ -47,6 +49,14 @@ impl Intersect for Shape {
 }
 
 impl Shape {
+    /// Where a ray hits, from where others may start.
+    pub fn surface_point(&self, ray: &Ray, t: f32, at: Option<Barycentrics>) -> SurfacePoint {
+        match self {
+            Self::Triangle(triangle) => triangle.surface_point(at.unwrap_or_default()),
+            Self::Sphere(sphere) => sphere.surface_point(ray.at(t)),
+        }
+    }
+
     /// The geometric normal at `point` on the surface, a unit vector: outward for a sphere, the
     /// side of counterclockwise vertices for a triangle.
     pub fn normal(&self, point: Vec3) -> Vec3 {
