@@ -42,10 +42,10 @@ pub trait Corners {
     /// The point of the triangle with these barycentrics, to start rays from: that of a hit by its
     /// payload, where `ray.at(hit.t)` may be far off the surface.
     ///
-    /// Computed in `f64` for both scalars. In `f32` the error is one rounding of the position: on which side
-    /// of the triangle a ray starts, [`Watertight`] and [`Precise`] tell without one. [`Fast`] does not, and
-    /// may hit it again at grazing angles. In `f64`, which has nothing wider, it is 2^18 epsilon of the
-    /// triangle's largest extent: enough for triangles 10,000 times as long as wide.
+    /// Computed in `f64` for both scalars. The error is one rounding of the position, and 2^18 epsilon of
+    /// `f64` (6e-11) of the triangle's largest extent: enough for triangles 10,000 times as long as wide in
+    /// the modes that decide in `f64` on which side of the triangle a ray starts, [`Watertight`] and
+    /// [`Precise`]. [`Fast`] in `f32` does not, and may hit the triangle again at grazing angles.
     fn surface_point(&self, at: Barycentrics<Self::Scalar>) -> SurfacePoint<Self::Scalar> {
         SurfacePoint::of_triangle(self.corners(), at)
     }
