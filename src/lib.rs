@@ -26,6 +26,8 @@
 //!
 //! - What a tree can hold: [`Primitive`], one method; to be hit by rays, [`Intersect`], one more.
 //!   Built in: [`Triangle`], [`TriangleMesh`], [`Sphere`], [`Aabb`].
+//! - How exactly a triangle is tested, by type: [`Watertight`], what [`Triangle`] is by itself, [`Fast`]
+//!   or [`Precise`]; each with its errors and its price in the README.
 //! - How it is built: [`Bvh::build`] for the good default, [`Bvh::builder`] for a [`Quality`], one
 //!   of the [`heuristic`]s or your own, the leaf size, threads, and what to do with invalid
 //!   primitives.
@@ -40,6 +42,8 @@
 //! - **The naive answer.** The hit is that of the loop over all primitives with the same primitive
 //!   test: same t bits, same index, the lowest index where several have the same t. It does not
 //!   depend on heuristic, leaf size or number of threads. How: [`Intersect::intersect`].
+//! - **No leaks.** A ray from inside a closed mesh hits it, at edges and corners too, unless its triangles
+//!   are [`Fast`].
 //! - **No panics on data.** NaN, infinities, empty input, degenerate primitives, absurd options: each
 //!   has a documented answer or a typed error, [`BuildError`]. (Your own trait implementations may
 //!   panic, of course.)
