@@ -16,7 +16,7 @@ use bvhkit::{Bvh, Ray, Scalar};
 use common::heuristics;
 use common::in_every_mode::in_every_mode;
 use common::integers::{self, Point, assert_exact, exact_t, sub};
-use common::modes::{Mode, in_mode};
+use common::modes::Mode;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -42,8 +42,7 @@ fn check<M: Mode>(seed: u64, intervals: &[(f64, f64)]) -> usize {
             let origin = point(-60, 63);
             rays[i] = (origin, sub(scene[i % 12][i % 3], origin));
         }
-        let triangles: Vec<_> = scene.iter().map(|&corners| integers::triangle(corners)).collect();
-        let triangles = in_mode::<M>(&triangles);
+        let triangles: Vec<_> = scene.iter().map(|&corners| M::of(integers::triangle(corners))).collect();
         for (name, heuristic) in heuristics::all() {
             let bvh = Bvh::builder().heuristic(&*heuristic).max_leaf_size(2).build(&triangles).unwrap();
             for (i, &(origin, direction)) in rays.iter().enumerate().filter(|(_, ray)| ray.1 != [0; 3]) {

@@ -8,7 +8,7 @@ mod common {
 
 use bvhkit::{Bvh, Fast, Precise, Ray, Scalar, Triangle, Watertight};
 use common::integers::{self, Point, assert_exact, exact_t};
-use common::modes::{Mode, in_mode};
+use common::modes::Mode;
 
 fn grid(range: std::ops::Range<i32>) -> Vec<Point> {
     let all = || range.clone();
@@ -64,8 +64,8 @@ impl<M: Mode> Asked for Tree<M> {
 fn check(corners: std::ops::Range<i32>, origins: std::ops::Range<i32>, step: usize, t_min: f64) -> usize {
     let scene = triangles(&grid(corners));
     fn tree<M: Mode + 'static>(scene: &[[Point; 3]]) -> Box<dyn Asked> {
-        let triangles: Vec<_> = scene.iter().map(|&corners| integers::triangle(corners)).collect();
-        let bvh = Bvh::build(in_mode::<M>(&triangles)).unwrap();
+        let triangles = scene.iter().map(|&corners| M::of(integers::triangle(corners)));
+        let bvh = Bvh::build(triangles).unwrap();
         // Triangles without area stay counted.
         assert_eq!(bvh.len(), scene.len());
         Box::new(Tree(bvh))

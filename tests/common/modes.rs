@@ -31,8 +31,3 @@ modes! {
     Fast of f64;
     Watertight of f64;
 }
-
-/// The triangles in a mode.
-pub fn in_mode<M: Mode>(triangles: &[Triangle<M::Number>]) -> Vec<M> {
-    triangles.iter().map(|&triangle| M::of(triangle)).collect()
-}
