@@ -7,38 +7,18 @@
 mod common {
     pub mod heuristics;
     pub mod hostile;
+    pub mod in_every_mode;
+    pub mod integers;
+    pub mod modes;
 }
 
-use bvhkit::{Bvh, Ray, Scalar, Triangle};
+use bvhkit::{Bvh, Ray, Scalar};
 use common::heuristics;
+use common::in_every_mode::in_every_mode;
+use common::integers::{self, Point, assert_exact, exact_t, sub};
+use common::modes::Mode;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-
-type Point = [i32; 3];
-
-fn sub(a: Point, b: Point) -> Point {
-    [0, 1, 2].map(|axis| a[axis] - b[axis])
-}
-
-fn dot(a: Point, b: Point) -> i32 {
-    (0..3).map(|axis| a[axis] * b[axis]).sum()
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// The t at which the line meets the triangle, edges and corners included, coplanar ones excluded.
-/// The nearest `f64` to the exact fraction.
-fn exact_t([a, b, c]: [Point; 3], origin: Point, direction: Point) -> Option<f64> {
-    let [a, b, c] = [a, b, c].map(|corner| sub(corner, origin));
-    let normal = cross(sub(b, a), sub(c, a));
-    let det = dot(normal, direction);
-    // Which side of each edge the line passes.
-    let sides = [cross(c, b), cross(a, c), cross(b, a)].map(|plane| dot(plane, direction));
-    let inside = sides.iter().all(|&side| side >= 0) || sides.iter().all(|&side| side <= 0);
-    (det != 0 && inside).then(|| f64::from(dot(normal, a)) / f64::from(det))
-}
 
 /// Intervals that end nowhere, at zero, or at powers of the golden ratio, which stay clear of all
 /// fractions that occur.
@@ -49,7 +29,7 @@ const BEHIND: [(f64, f64); 4] =
 const PHI: f64 = 1.618_033_988_75;
 
 /// Grid scenes of 12 triangles, 100 rays each; returns the number of hits.
-fn check<S: Scalar>(seed: u64, intervals: &[(f64, f64)]) -> usize {
+fn check<M: Mode>(seed: u64, intervals: &[(f64, f64)]) -> usize {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let mut hits = 0;
     for _ in 0..100 {
@@ -62,47 +42,35 @@ fn check<S: Scalar>(seed: u64, intervals: &[(f64, f64)]) -> usize {
             let origin = point(-60, 63);
             rays[i] = (origin, sub(scene[i % 12][i % 3], origin));
         }
-        let s = |p: Point| p.map(|x| S::from_f64(f64::from(x)));
-        let triangles: Vec<_> = scene.iter().map(|&[a, b, c]| Triangle::new(s(a), s(b), s(c))).collect();
+        let triangles: Vec<_> = scene.iter().map(|&corners| M::of(integers::triangle(corners))).collect();
         for (name, heuristic) in heuristics::all() {
             let bvh = Bvh::builder().heuristic(&*heuristic).max_leaf_size(2).build(&triangles).unwrap();
             for (i, &(origin, direction)) in rays.iter().enumerate().filter(|(_, ray)| ray.1 != [0; 3]) {
                 // A fraction of such large numbers may come close to any end.
                 let (from, to) = if i % 2 == 1 { intervals[0] } else { intervals[i / 2 % intervals.len()] };
-                let ray = Ray::new(s(origin), s(direction)).with_interval(S::from_f64(from), S::from_f64(to));
-                let mut expected: Vec<_> = (0..scene.len())
+                let s = M::Number::from_f64;
+                let ray = Ray::new(integers::point::<M::Number>(origin), integers::point(direction))
+                    .with_interval(s(from), s(to));
+                let expected: Vec<_> = (0..scene.len())
                     .filter_map(|index| Some((index, exact_t(scene[index], origin, direction)?)))
                     .filter(|&(_, t)| from <= t && t <= to)
                     .collect();
-                let mut found: Vec<_> = bvh.hits(&ray).map(|hit| (hit.index, hit.t.to_f64())).collect();
-                assert!(found.is_sorted_by(|a, b| (a.1, a.0) < (b.1, b.0)), "{name}: {found:?}");
-                found.sort_by_key(|hit| hit.0);
-                expected.sort_by_key(|hit| hit.0);
+                let found: Vec<_> = bvh.hits(&ray).map(|hit| (hit.index, hit.t)).collect();
                 hits += found.len();
-                let near = |a: f64, b: f64| (a - b).abs() <= 8.0 * S::EPSILON.to_f64() * b.abs();
-                assert!(
-                    found.len() == expected.len()
-                        && found.iter().zip(&expected).all(|(f, e)| f.0 == e.0 && near(f.1, e.1)),
-                    "{name}, {ray:?}: {found:?}, exactly {expected:?}",
-                );
+                assert_exact(&found, &expected, &(name, ray));
             }
         }
     }
     hits
 }
 
-#[test]
-fn grid_scenes_f32() {
-    assert!(check::<f32>(1, &AHEAD) > 10_000);
-}
-
-#[test]
-fn grid_scenes_f64() {
-    assert!(check::<f64>(2, &AHEAD) > 10_000);
+fn grid_scenes<M: Mode>() {
+    assert!(check::<M>(1, &AHEAD) > 10_000);
 }
 
 /// The interval is the ray's, wherever its origin is.
-#[test]
-fn grid_scenes_behind_the_origin() {
-    assert!(check::<f32>(3, &BEHIND) + check::<f64>(4, &BEHIND) > 20_000);
+fn grid_scenes_behind_the_origin<M: Mode>() {
+    assert!(check::<M>(3, &BEHIND) > 10_000);
 }
+
+in_every_mode!(grid_scenes grid_scenes_behind_the_origin);

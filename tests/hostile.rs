@@ -3,14 +3,18 @@
 mod common {
     pub mod heuristics;
     pub mod hostile;
+    pub mod in_every_mode;
+    pub mod modes;
 }
 
 use bvhkit::heuristic::{BinnedSah, BuildNode, Heuristic, Median, Midpoint, Split, SweepSah};
 use bvhkit::{
     Aabb, Axis, BuildError, Bvh, Intersect, MAX_DEPTH, PreparedRay, Primitive, Quality, Ray, Scalar, Sphere,
-    reference,
+    Triangle, reference,
 };
 use common::heuristics;
+use common::in_every_mode::in_every_mode;
+use common::modes::Mode;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Concentric or, if all are equally large, identical.
@@ -31,27 +35,53 @@ impl<H: Heuristic<f32>> Heuristic<f32> for Counted<'_, H> {
     }
 }
 
+/// Counts how often its box is asked for.
+struct Asked<'a>(Sphere, &'a AtomicU64);
+
+impl Primitive for Asked<'_> {
+    type Scalar = f32;
+    fn aabb(&self) -> Aabb {
+        self.1.fetch_add(1, Ordering::Relaxed);
+        self.0.aabb()
+    }
+    fn centroid(&self) -> [f32; 3] {
+        self.0.centroid()
+    }
+}
+
+impl Intersect for Asked<'_> {
+    type Payload = ();
+    fn intersect(&self, ray: &PreparedRay) -> Option<(f32, ())> {
+        self.0.intersect(ray)
+    }
+}
+
 /// Builds over `n` spheres with one centroid, asks for the closest hit, and returns the work.
 fn work(n: usize, heuristic: impl Heuristic<f32>, radius: impl Fn(usize) -> f32) -> u64 {
-    let spheres = concentric(n, radius);
-    let references = AtomicU64::new(0);
+    let spheres = concentric(n, &radius);
+    let (references, boxes) = (AtomicU64::new(0), AtomicU64::new(0));
     let counted = Counted { heuristic, references: &references };
-    let bvh = Bvh::builder().heuristic(counted).build(&spheres).unwrap();
+    let bvh =
+        Bvh::builder().heuristic(counted).build(spheres.iter().map(|&sphere| Asked(sphere, &boxes))).unwrap();
+    assert!(boxes.load(Ordering::Relaxed) <= 2 * n as u64, "a box is asked for once or twice");
     bvh.check().unwrap();
     assert!(bvh.report().max_depth <= MAX_DEPTH);
     // From the outside the largest is hit first; of equals, the first.
+    let first = (1..n).fold(0, |first, i| if radius(i) > radius(first) { i } else { first });
     let ray = Ray::new([1.0, 2.0, -20.0], [0.0, 0.0, 1.0]);
-    assert_eq!(bvh.closest_hit(&ray), reference::closest_hit(&spheres, &ray));
+    let hit = bvh.closest_hit(&ray);
+    assert_eq!(hit.map(|hit| hit.index), Some(first));
+    assert_eq!(hit, reference::closest_hit(&spheres, &ray));
     drop(bvh);
     references.into_inner()
 }
 
-/// Four times as many primitives take little more than four times the work.
+/// Four times as many primitives take little more than four times the work: of n log n, 4.5 times.
 fn assert_n_log_n(n: usize, heuristic: impl Heuristic<f32> + Copy) {
     let radii: [fn(usize) -> f32; 2] = [|_| 1.0, |i| 1.0 + (i % 1000) as f32 * 0.001];
     for radius in radii {
         let [small, large] = [n / 4, n].map(|n| work(n, heuristic, radius));
-        assert!(large < 5 * small, "{small} references for {}, {large} for {n}", n / 4);
+        assert!(large * 10 <= small * 48, "{small} references for {}, {large} for {n}", n / 4);
     }
 }
 
@@ -63,16 +93,22 @@ fn a_million_equal_primitives_or_centroids() {
     assert_n_log_n(100_000, SweepSah::default());
 }
 
-#[test]
-fn of_equal_primitives_the_first_is_hit() {
-    let spheres = concentric(1000, |_| 1.0);
-    let ray = Ray::new([1.0, 2.0, -20.0], [0.0, 0.0, 1.0]);
-    for (name, heuristic) in heuristics::all() {
-        let bvh = Bvh::builder().heuristic(&*heuristic).build(&spheres).unwrap();
-        assert_eq!(bvh.closest_hit(&ray).unwrap().index, 0, "{name}");
-        assert!(bvh.hits(&ray).map(|hit| hit.index).eq(0..1000), "{name}");
+fn of_equal_primitives_the_first_is_hit<M: Mode>() {
+    let point = |x: [f64; 3]| x.map(M::Number::from_f64);
+    let (a, b, c) = (point([0.0, 0.0, 3.0]), point([1.0, 0.0, 3.0]), point([0.0, 1.0, 3.5]));
+    let triangles = [M::of(Triangle::new(a, b, c)); 1000];
+    // Inside, at an edge and at a corner.
+    for target in [[0.25, 0.25, 0.0], [0.5, 0.0, 0.0], [0.0, 0.0, 0.0]] {
+        let ray = Ray::new(point(target), point([0.0, 0.0, 1.0]));
+        for (name, heuristic) in heuristics::all() {
+            let bvh = Bvh::builder().heuristic(&*heuristic).build(&triangles).unwrap();
+            assert_eq!(bvh.closest_hit(&ray).unwrap().index, 0, "{name}");
+            assert!(bvh.hits(&ray).map(|hit| hit.index).eq(0..1000), "{name}");
+        }
     }
 }
+
+in_every_mode!(of_equal_primitives_the_first_is_hit);
 
 /// Proposes the same at every node, as a function of the number of primitives.
 #[derive(Clone, Copy)]
@@ -98,12 +134,10 @@ const STUBBORN: [(&str, Stubborn); 9] = [
     ("always a leaf", Stubborn(|_| Split::Leaf)),
 ];
 
-/// Runs `f` where a recursion as deep as a bad tree would overflow.
+/// Runs `f`, and all that it leaves to other threads, where a recursion as deep as a bad tree would overflow.
 fn on_a_small_stack(f: impl FnOnce() + Send) {
-    std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().stack_size(64 * 1024).spawn_scoped(scope, f).unwrap();
-        thread.join().unwrap();
-    });
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).stack_size(64 * 1024).build().unwrap();
+    pool.install(f);
 }
 
 /// `n` spheres in a row, each met by the same ray.
@@ -125,13 +159,13 @@ fn build_and_ask<S: Scalar>(n: usize, name: &str, heuristic: &dyn Heuristic<S>) 
 
 #[test]
 fn hostile_heuristics_keep_the_depth_bound_on_a_small_stack() {
-    // Few enough to be built on this very thread, and more than a hundred times the depth bound.
-    on_a_small_stack(|| STUBBORN.iter().for_each(|(name, stubborn)| build_and_ask(4001, name, stubborn)));
+    on_a_small_stack(|| STUBBORN.iter().for_each(|(name, stubborn)| build_and_ask(100_003, name, stubborn)));
     on_a_small_stack(|| {
-        heuristics::all().iter().for_each(|(name, h)| build_and_ask::<f32>(4001, name, &**h))
+        heuristics::all().iter().for_each(|(name, h)| build_and_ask::<f32>(100_003, name, &**h))
     });
+    // Fewer than are binned in several chunks: the bins of some, 64 of f64, are 11 KiB, and there are several copies.
     on_a_small_stack(|| {
-        heuristics::all().iter().for_each(|(name, h)| build_and_ask::<f64>(4001, name, &**h))
+        heuristics::all().iter().for_each(|(name, h)| build_and_ask::<f64>(30_011, name, &**h))
     });
 }
 
@@ -183,6 +217,28 @@ fn more_primitives_than_indices() {
         // These would take more memory than there is, were any allocated.
         let big = std::iter::repeat_n(Sphere::new([0.0f32; 3], 1.0), count);
         let error = Bvh::builder().quality(Quality::High).build(big).unwrap_err();
+        assert_eq!(error, BuildError::TooManyPrimitives { count });
+    }
+}
+
+/// Tells how many it has, and has none to give.
+struct Untouchable(usize);
+
+impl Iterator for Untouchable {
+    type Item = Sphere;
+    fn next(&mut self) -> Option<Sphere> {
+        panic!("nothing is taken before the number is known")
+    }
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.0, None)
+    }
+}
+
+#[test]
+#[cfg(target_pointer_width = "64")]
+fn more_primitives_than_indices_are_refused_before_the_first_is_taken() {
+    for count in [1 << 32, usize::MAX] {
+        let error = Bvh::build(Untouchable(count)).unwrap_err();
         assert_eq!(error, BuildError::TooManyPrimitives { count });
     }
 }

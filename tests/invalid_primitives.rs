@@ -6,6 +6,8 @@ mod common {
     pub mod answers;
     pub mod heuristics;
     pub mod hostile;
+    pub mod in_every_mode;
+    pub mod modes;
 }
 
 use bvhkit::{
@@ -14,6 +16,8 @@ use bvhkit::{
 use common::agreement::assert_agreement;
 use common::aimed::{aimed, soup, triangles};
 use common::answers::{Answers, Payload};
+use common::in_every_mode::in_every_mode;
+use common::modes::Mode;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -22,15 +26,14 @@ use rand_pcg::Pcg64Mcg;
 fn assert_rejected_or_skipped<P: Intersect<Payload: Payload> + Clone>(
     good: &[P],
     bad: &P,
+    flaw: Flaw,
     rays: &[Ray<P::Scalar>],
 ) {
     for index in [0, good.len() / 2, good.len()] {
         let mut primitives = good.to_vec();
         primitives.insert(index, bad.clone());
-        match Bvh::build(&primitives) {
-            Err(BuildError::InvalidPrimitive { index: named, .. }) => assert_eq!(named, index),
-            other => panic!("accepted at {index}: {:?}", other.map(|bvh| bvh.len())),
-        }
+        let rejected = Bvh::build(&primitives).map(|bvh| bvh.len());
+        assert_eq!(rejected, Err(BuildError::InvalidPrimitive { index, flaw }));
         let bvh = Bvh::builder().on_invalid(OnInvalid::Skip).build(&primitives).unwrap();
         assert_eq!((bvh.len(), bvh.skipped()), (good.len(), &[index as u32][..]));
         for ray in rays {
@@ -44,28 +47,29 @@ fn assert_rejected_or_skipped<P: Intersect<Payload: Payload> + Clone>(
     }
 }
 
-fn assert_bad_corners<S: Scalar>(bad: S) {
-    let good = triangles::<S>(&soup(20), |_, x| x);
-    let rays = aimed(&good);
-    for place in 0..9 {
-        let mut triangle = good[7];
-        let corner = [&mut triangle.a, &mut triangle.b, &mut triangle.c].into_iter().nth(place / 3);
-        corner.unwrap()[place % 3] = bad;
-        assert_rejected_or_skipped(&good, &triangle, &rays);
+fn a_nan_or_an_infinity_in_any_corner_of_a_triangle<M: Mode>() {
+    let triangles = triangles::<M::Number>(&soup(20), |_, x| x);
+    let good: Vec<_> = triangles.iter().copied().map(M::of).collect();
+    let rays = aimed(&triangles);
+    let flaws = [
+        (f64::NAN, Flaw::NanBox),
+        (-f64::NAN, Flaw::NanBox),
+        (f64::INFINITY, Flaw::InfiniteBox),
+        (f64::NEG_INFINITY, Flaw::InfiniteBox),
+    ];
+    for (bad, flaw) in flaws {
+        for place in 0..9 {
+            let mut triangle = triangles[7];
+            let corner = [&mut triangle.a, &mut triangle.b, &mut triangle.c].into_iter().nth(place / 3);
+            corner.unwrap()[place % 3] = M::Number::from_f64(bad);
+            assert_rejected_or_skipped(&good, &M::of(triangle), flaw, &rays);
+        }
     }
 }
 
-#[test]
-fn an_infinity_in_any_corner_of_a_triangle() {
-    assert_bad_corners(f32::INFINITY);
-    assert_bad_corners(f32::NEG_INFINITY);
-    assert_bad_corners(f64::INFINITY);
-}
-
-#[test]
-fn a_nan_in_any_corner_of_a_triangle() {
-    assert_bad_corners(f32::NAN);
-    assert_bad_corners(f64::NAN);
+in_every_mode! {
+    a_nan_or_an_infinity_in_any_corner_of_a_triangle
+    a_triangle_without_area_is_counted_but_never_hit
 }
 
 #[test]
@@ -73,18 +77,29 @@ fn spheres_and_boxes() {
     let rays = aimed(&triangles::<f32>(&soup(20), |_, x| x));
     let spheres: Vec<_> = soup(20).iter().map(|[a, ..]| Sphere::new(a.map(|x| x as f32), 0.25)).collect();
     let boxes: Vec<_> = spheres.iter().map(Primitive::aabb).collect();
-    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+    // A minimum above its maximum is named first, infinite or not.
+    let (nan, infinite, inverted) = (Flaw::NanBox, Flaw::InfiniteBox, Flaw::InvertedBox);
+    for (bad, flaw, as_min, as_max, as_radius) in [
+        (f32::NAN, nan, nan, nan, nan),
+        (f32::INFINITY, infinite, inverted, infinite, infinite),
+        (f32::NEG_INFINITY, infinite, infinite, inverted, inverted),
+    ] {
         for axis in 0..3 {
             let (mut sphere, mut lower, mut upper) = (spheres[3], boxes[3], boxes[3]);
             (sphere.center[axis], lower.min[axis], upper.max[axis]) = (bad, bad, bad);
-            assert_rejected_or_skipped(&spheres, &sphere, &rays);
-            assert_rejected_or_skipped(&boxes, &lower, &rays);
-            assert_rejected_or_skipped(&boxes, &upper, &rays);
+            assert_rejected_or_skipped(&spheres, &sphere, flaw, &rays);
+            assert_rejected_or_skipped(&boxes, &lower, as_min, &rays);
+            assert_rejected_or_skipped(&boxes, &upper, as_max, &rays);
         }
-        assert_rejected_or_skipped(&spheres, &Sphere::new([0.0; 3], bad), &rays);
+        assert_rejected_or_skipped(&spheres, &Sphere::new([0.0; 3], bad), as_radius, &rays);
     }
-    assert_rejected_or_skipped(&spheres, &Sphere::new([0.0; 3], -1.0), &rays);
-    assert_rejected_or_skipped(&boxes, &Aabb::new([0.0, 1.0, 0.0], [1.0, 0.5, 1.0]), &rays);
+    assert_rejected_or_skipped(&spheres, &Sphere::new([0.0; 3], -1.0), Flaw::InvertedBox, &rays);
+    assert_rejected_or_skipped(
+        &boxes,
+        &Aabb::new([0.0, 1.0, 0.0], [1.0, 0.5, 1.0]),
+        Flaw::InvertedBox,
+        &rays,
+    );
 }
 
 /// A sphere that is sorted by a point of the test's choice.
@@ -119,7 +134,7 @@ fn a_centroid_that_is_no_point() {
         let bad = Sorted(good[5].0, [0.0, bad, 0.0]);
         let error = Bvh::build([bad.clone()]).unwrap_err();
         assert_eq!(error, BuildError::InvalidPrimitive { index: 0, flaw: Flaw::Centroid });
-        assert_rejected_or_skipped(&good, &bad, &rays);
+        assert_rejected_or_skipped(&good, &bad, Flaw::Centroid, &rays);
     }
 }
 
@@ -131,20 +146,19 @@ fn all_invalid_is_as_empty() {
     assert_eq!(assert_agreement(&spheres, &[Ray::new([0.0; 3], [1.0, 0.0, 0.0])]), 0);
 }
 
-#[test]
-fn a_triangle_without_area_is_counted_but_never_hit() {
+fn a_triangle_without_area_is_counted_but_never_hit<M: Mode>() {
     let mut rng = Pcg64Mcg::seed_from_u64(1);
-    let mut point = || [0.0; 3].map(|_: f32| rng.random_range(-1.0..1.0f32));
+    let mut point = || [0.0; 3].map(|_: f64| M::Number::from_f64(rng.random_range(-1.0..1.0)));
     for _ in 0..1000 {
         let (a, b, origin) = (point(), point(), point());
         // Three segments and a point.
         let flat =
-            [Triangle::new(a, a, b), Triangle::new(a, b, a), Triangle::new(a, b, b), Triangle::new(a, a, a)];
+            [[a, a, b], [a, b, a], [a, b, b], [a, a, a]].map(|[a, b, c]| M::of(Triangle::new(a, b, c)));
         let bvh = Bvh::build(flat).unwrap();
         assert_eq!(bvh.len(), 4);
-        for target in [a, b, [0, 1, 2].map(|k| (a[k] + b[k]) * 0.5)] {
+        for target in [a, b, [0, 1, 2].map(|k| (a[k] + b[k]) * M::Number::HALF)] {
             let ray = Ray::new(origin, [0, 1, 2].map(|k| target[k] - origin[k]));
-            assert_eq!(bvh.closest_hit(&ray), None, "{flat:?} {ray:?}");
+            assert!(bvh.closest_hit(&ray).is_none(), "{flat:?} {ray:?}");
         }
     }
 }

@@ -7,16 +7,19 @@ mod common {
     pub mod answers;
     pub mod heuristics;
     pub mod hostile;
+    pub mod modes;
 }
 mod generate {
+    pub mod numbers;
     pub mod primitives;
     pub mod rays;
     pub mod scenes;
 }
 
-use bvhkit::{Intersect, Ray, Scalar, Triangle, TriangleMesh, reference};
+use bvhkit::{Fast, Intersect, Precise, Ray, Scalar, Triangle, TriangleMesh, Watertight, reference};
 use common::agreement::assert_agreement;
 use common::answers::Payload;
+use common::modes::Mode;
 use generate::primitives::{Corners, boxes, discs, spheres, triangles};
 use generate::rays::{Aim, aims};
 use generate::scenes::soup;
@@ -47,6 +50,11 @@ fn check<S: Scalar, P: Intersect<Scalar = S, Payload: Payload>>(
     primitives: &[P],
 ) -> usize {
     assert_agreement(primitives, &rays(soup, aims, primitives))
+}
+
+/// Triangles in a mode.
+fn check_mode<M: Mode>(soup: &[Corners<M::Number>], aims: &[Aim]) -> usize {
+    check(soup, aims, &triangles(soup).into_iter().map(M::of).collect::<Vec<_>>())
 }
 
 /// The same triangles through an index buffer, wound the other way.
@@ -82,8 +90,11 @@ macro_rules! properties {
 }
 
 properties! {
-    triangles_f32: f32, |soup, aims| check(soup, aims, &triangles(soup));
-    triangles_f64: f64, |soup, aims| check(soup, aims, &triangles(soup));
+    fast_triangles_f32: f32, check_mode::<Fast<Triangle>>;
+    fast_triangles_f64: f64, check_mode::<Fast<Triangle<f64>>>;
+    watertight_triangles_f32: f32, check_mode::<Watertight<Triangle>>;
+    watertight_triangles_f64: f64, check_mode::<Watertight<Triangle<f64>>>;
+    precise_triangles: f32, check_mode::<Precise<Triangle>>;
     mesh_triangles_f32: f32, check_mesh;
     mesh_triangles_f64: f64, check_mesh;
     spheres_f32: f32, |soup, aims| check(soup, aims, &spheres(soup));
@@ -104,7 +115,7 @@ fn the_aims_are_good() {
     for _ in 0..50 {
         let soup = soup::<f32>().new_tree(&mut runner).unwrap().current();
         let aims = aims().new_tree(&mut runner).unwrap().current();
-        hits[0] += check(&soup, &aims, &triangles(&soup));
+        hits[0] += check_mode::<Fast<Triangle>>(&soup, &aims);
         hits[1] += check(&soup, &aims, &spheres(&soup));
         hits[2] += check(&soup, &aims, &boxes(&soup));
         hits[3] += check(&soup, &aims, &discs(&soup));

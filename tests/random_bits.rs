@@ -4,11 +4,15 @@ mod common {
     pub mod answers;
     pub mod heuristics;
     pub mod hostile;
+    pub mod modes;
 }
 
-use bvhkit::{Aabb, BuildError, Bvh, Intersect, OnInvalid, Ray, Scalar, Sphere, Triangle};
+use bvhkit::{
+    Aabb, BuildError, Bvh, Fast, Intersect, OnInvalid, Precise, Ray, Scalar, Sphere, Triangle, Watertight,
+};
 use common::answers::{Answers, Payload};
 use common::heuristics;
+use common::modes::Mode;
 use proptest::prelude::*;
 
 /// Numbers out of bytes; zeros when they run out.
@@ -76,8 +80,8 @@ fn check<P: Intersect<Payload: Payload>>(bytes: &[u8], primitive: fn(&mut Bytes<
     }
 }
 
-fn triangle<S: Scalar>(bytes: &mut Bytes<'_>) -> Triangle<S> {
-    Triangle::new(bytes.point(), bytes.point(), bytes.point())
+fn triangle<M: Mode>(bytes: &mut Bytes<'_>) -> M {
+    M::of(Triangle::new(bytes.point(), bytes.point(), bytes.point()))
 }
 
 fn sphere<S: Scalar>(bytes: &mut Bytes<'_>) -> Sphere<S> {
@@ -97,8 +101,11 @@ proptest! {
 
     #[test]
     fn any_bytes_at_all(bytes in prop::collection::vec(any::<u8>(), 0..3000)) {
-        check(&bytes, triangle::<f32>);
-        check(&bytes, triangle::<f64>);
+        check(&bytes, triangle::<Fast<Triangle>>);
+        check(&bytes, triangle::<Fast<Triangle<f64>>>);
+        check(&bytes, triangle::<Watertight<Triangle>>);
+        check(&bytes, triangle::<Watertight<Triangle<f64>>>);
+        check(&bytes, triangle::<Precise<Triangle>>);
         check(&bytes, sphere::<f32>);
         check(&bytes, sphere::<f64>);
         check(&bytes, cuboid::<f32>);

@@ -1,6 +1,6 @@
 //! One soup of corners, seen as every kind of primitive.
 
-use bvhkit::{Aabb, Intersect, PreparedRay, Primitive, Ray, Scalar, Sphere, Triangle};
+use bvhkit::{Aabb, Intersect, PreparedRay, Primitive, Scalar, Sphere, Triangle};
 
 /// Three points; what a primitive makes of them is its own affair.
 pub type Corners<S> = [[S; 3]; 3];

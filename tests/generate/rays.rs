@@ -1,7 +1,8 @@
 //! Strategies for rays that go where rounding decides: corners, edges, faces of boxes, surfaces.
 
+use super::numbers::{LogUniform, log_uniform, scalar_from_bits};
 use super::primitives::Corners;
-use super::scenes::scalar_from_bits;
+
 use bvhkit::{Ray, Scalar};
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -9,9 +10,16 @@ use proptest::sample::Index;
 /// How to make a ray out of a soup, whose primitives it picks by index.
 #[derive(Clone, Debug)]
 pub struct Aim {
-    from: Place,
+    from: From,
     toward: Toward,
     interval: Interval,
+}
+
+#[derive(Clone, Debug)]
+enum From {
+    Place(Place),
+    /// Any exponents.
+    Numbers([LogUniform; 3]),
 }
 
 /// A point of some primitive: a corner, on an edge, inside; or pushed off it by its own size.
@@ -30,6 +38,8 @@ enum Toward {
     Axis { axis: usize, length: f64, zeros: [bool; 3] },
     /// Any bits.
     Bits([u64; 3]),
+    /// Any exponents.
+    Numbers([LogUniform; 3]),
     /// Nowhere: an invalid ray.
     Zero,
 }
@@ -39,6 +49,7 @@ enum Interval {
     Whole,
     From(f64),
     Between(f64, f64),
+    Numbers(LogUniform, LogUniform),
     Line,
 }
 
@@ -49,6 +60,7 @@ pub fn aims() -> impl Strategy<Value = Vec<Aim>> {
         // Backward, forward, empty, a single point.
         2 => (-2.0..2.0, 0.0..3.0).prop_map(|(t_min, t_max)| Interval::Between(t_min, t_max)),
         1 => prop::sample::select(vec![0.0, 1.0]).prop_map(|t| Interval::Between(t, t)),
+        1 => (log_uniform(), log_uniform()).prop_map(|(t_min, t_max)| Interval::Numbers(t_min, t_max)),
         1 => Just(Interval::Line),
     ];
     let toward = prop_oneof![
@@ -56,10 +68,16 @@ pub fn aims() -> impl Strategy<Value = Vec<Aim>> {
         8 => (0..3usize, prop::sample::select(vec![1.0, -1.0, 0.3, -7.0]), any::<[bool; 3]>())
             .prop_map(|(axis, length, zeros)| Toward::Axis { axis, length, zeros }),
         1 => any::<[u64; 3]>().prop_map(Toward::Bits),
+        1 => numbers().prop_map(Toward::Numbers),
         1 => Just(Toward::Zero),
     ];
-    let aim = (place(), toward, interval).prop_map(|(from, toward, interval)| Aim { from, toward, interval });
+    let from = prop_oneof![9 => place().prop_map(From::Place), 1 => numbers().prop_map(From::Numbers)];
+    let aim = (from, toward, interval).prop_map(|(from, toward, interval)| Aim { from, toward, interval });
     prop::collection::vec(aim, 1..16)
+}
+
+fn numbers() -> impl Strategy<Value = [LogUniform; 3]> {
+    [log_uniform(), log_uniform(), log_uniform()]
 }
 
 fn place() -> impl Strategy<Value = Place> {
@@ -87,7 +105,10 @@ impl Place {
 
 impl Aim {
     pub fn ray<S: Scalar>(&self, soup: &[Corners<S>]) -> Ray<S> {
-        let origin = self.from.point(soup);
+        let origin = match &self.from {
+            From::Place(place) => place.point(soup),
+            From::Numbers(numbers) => numbers.map(LogUniform::number),
+        };
         let direction = match &self.toward {
             Toward::Place(place) => {
                 let target = place.point(soup);
@@ -99,12 +120,14 @@ impl Aim {
                 direction
             }
             Toward::Bits(bits) => bits.map(scalar_from_bits),
+            Toward::Numbers(numbers) => numbers.map(LogUniform::number),
             Toward::Zero => [S::ZERO, -S::ZERO, S::ZERO],
         };
         let (t_min, t_max) = match self.interval {
             Interval::Whole => (S::ZERO, S::INFINITY),
             Interval::From(t_min) => (S::from_f64(t_min), S::INFINITY),
             Interval::Between(t_min, t_max) => (S::from_f64(t_min), S::from_f64(t_max)),
+            Interval::Numbers(t_min, t_max) => (t_min.number(), t_max.number()),
             Interval::Line => (S::NEG_INFINITY, S::INFINITY),
         };
         Ray::new(origin, direction).with_interval(t_min, t_max)

@@ -1,5 +1,6 @@
 //! Strategies for soups of corners: ordinary ones, and every way in which coordinates are awkward.
 
+use super::numbers::{exponent, log_uniform, scalar_from_bits};
 use super::primitives::Corners;
 use bvhkit::Scalar;
 use proptest::prelude::*;
@@ -23,13 +24,17 @@ pub fn soup<S: Scalar>() -> impl Strategy<Value = Vec<Corners<S>>> {
         several(plain().prop_map(|corners| corners.map(|point| point.map(|x| x + 1e7)))),
     ];
     let rounded = kinds.prop_map(|soup| soup.into_iter().map(|c| c.map(|p| p.map(S::from_f64))).collect());
-    prop_oneof![10 => rounded, 1 => prop::collection::vec(from_bits(), 0..60)]
-}
-
-/// Any finite number, as likely tiny as huge: subnormals, both zeros, both ends of the range.
-pub fn scalar_from_bits<S: Scalar>(bits: u64) -> S {
-    let x = if size_of::<S>() == 4 { f64::from(f32::from_bits(bits as u32)) } else { f64::from_bits(bits) };
-    S::from_f64(if x.is_finite() { x } else { 0.0 })
+    prop_oneof![
+        10 => rounded,
+        1 => prop::collection::vec(from_bits(), 0..60),
+        // Any exponent: of each coordinate, of each primitive, of the whole scene.
+        1 => prop::collection::vec([(); 3].map(|()| [(); 3].map(|()| log_uniform())), 0..60)
+            .prop_map(|soup| soup.into_iter().map(|c| c.map(|p| p.map(|x| x.number()))).collect()),
+        1 => prop::collection::vec((plain(), exponent()), 0..60)
+            .prop_map(|soup| soup.into_iter().map(|(c, e)| c.map(|p| p.map(|x| e.scale(x / 16.0)))).collect()),
+        1 => (several(plain()), exponent())
+            .prop_map(|(soup, e)| soup.into_iter().map(|c| c.map(|p| p.map(|x| e.scale(x / 16.0)))).collect()),
+    ]
 }
 
 fn from_bits<S: Scalar>() -> impl Strategy<Value = Corners<S>> {

@@ -260,6 +260,7 @@ mod tests {
     }
 
     #[test]
+    #[cfg_attr(miri, ignore = "too many primitives for an interpreter")]
     fn chunks_change_nothing() {
         let positions: Vec<f32> = (0..3 * CHUNK).map(|i| (i * 7919 % 10_007) as f32).collect();
         let references = unit_boxes(&positions);
