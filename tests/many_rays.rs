@@ -10,20 +10,18 @@ mod common {
     pub mod modes;
     pub mod soups;
 }
-mod support {
-    pub mod closed;
-}
+#[path = "support/closed.rs"]
+mod closed;
 
 use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, SweepSah};
 use bvhkit::reference::exact;
-use bvhkit::{Bvh, Fast, Precise, Ray, Scalar, Triangle, Watertight, reference};
+use bvhkit::{Bvh, Fast, Precise, Ray, Scalar, Triangle, Watertight};
+use common::answers::Answers;
 use common::modes::Mode;
-use common::answers::key;
 use common::soups::{self, KINDS, soup};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
-use support::closed;
 
 fn wanted() -> usize {
     std::env::var("BVHKIT_RAYS").map_or(100_000, |rays| rays.parse().expect("BVHKIT_RAYS is a number"))
@@ -32,6 +30,13 @@ fn wanted() -> usize {
 /// Scales, and offsets up to a million: the last are a million times the size of what is there.
 const PLACES: [(f64, f64); 8] =
     [(1e-6, 0.0), (1.0, 0.0), (1e6, 0.0), (1e-6, 1e-3), (1.0, 1e3), (1e6, 1e6), (1e-6, 1.0), (1.0, 1e6)];
+
+/// Every corner scaled, then shifted, not the same on all axes, and rounded: equal ones stay equal.
+fn placed(mesh: &[Triangle], scale: f64, offset: f64) -> Vec<Triangle> {
+    let shift = [1.0, -0.75, 0.5].map(|x| x * offset);
+    let place = |p: [f32; 3]| [0, 1, 2].map(|k| (f64::from(p[k]) * scale + shift[k]) as f32);
+    mesh.iter().map(|t| Triangle::new(place(t.a), place(t.b), place(t.c))).collect()
+}
 
 /// Rays of one origin.
 const BATCH: usize = 20_000;
@@ -75,7 +80,7 @@ fn aimed(mesh: &[Triangle], origin: [f32; 3], number: usize, rng: &mut Pcg64Mcg)
 }
 
 /// How many of the rays hit nothing.
-fn leaks<M: Mode>(mesh: &[Triangle], rays: &[Ray]) -> usize {
+fn leaks<M: Mode + Sync>(mesh: &[Triangle], rays: &[Ray]) -> usize {
     let widened = |p: [f32; 3]| p.map(|x| M::Number::from_f64(f64::from(x)));
     let triangles = mesh.iter().map(|t| M::of(Triangle::new(widened(t.a), widened(t.b), widened(t.c))));
     let bvh = Bvh::build(triangles).unwrap();
@@ -89,13 +94,14 @@ fn leaks<M: Mode>(mesh: &[Triangle], rays: &[Ray]) -> usize {
 
 #[test]
 fn no_ray_leaves_a_closed_mesh() {
-    let meshes = closed::all(if wanted() > 1_000_000 { 10_000 } else { 500 });
+    let size = if wanted() > 1_000_000 { 10_000 } else { 500 };
+    let meshes = closed::all(size);
     let batches = wanted().div_ceil(meshes.len() * PLACES.len() * BATCH.min(wanted() / 40));
     let per_batch = wanted().div_ceil(batches * meshes.len() * PLACES.len());
-    let (mut rays, mut leaking) = (0, [0; 3]);
+    let (mut rays, mut leaking) = (0, [0; 4]);
     for (name, mesh) in &meshes {
         for (scale, offset) in PLACES {
-            let mesh = closed::placed(mesh, scale, offset);
+            let mesh = placed(mesh, scale, offset);
             let mut rng = Pcg64Mcg::seed_from_u64(1);
             let aimed: Vec<Ray> = (0..batches)
                 .flat_map(|_| {
@@ -105,6 +111,7 @@ fn no_ray_leaves_a_closed_mesh() {
                 .filter(|ray| ray.validate().is_ok())
                 .collect();
             let here = [
+                leaks::<Fast<Triangle>>(&mesh, &aimed),
                 leaks::<Watertight<Triangle>>(&mesh, &aimed),
                 leaks::<Precise<Triangle>>(&mesh, &aimed),
                 leaks::<Watertight<Triangle<f64>>>(&mesh, &aimed),
@@ -116,8 +123,9 @@ fn no_ray_leaves_a_closed_mesh() {
             }
         }
     }
-    println!("Watertight, Precise, f64: {leaking:?} of {rays} rays leak, each mode");
-    assert_eq!(leaking, [0; 3]);
+    println!("Fast, Watertight, Precise, f64: {leaking:?} of {rays} rays leak");
+    // The first makes no promise; it shows that the rays are good at finding gaps.
+    assert_eq!(leaking[1..], [0; 3]);
     assert!(rays > wanted() / 10 * 9);
 }
 
@@ -138,9 +146,9 @@ fn differences<M: Mode>(kind: usize, seed: u64) -> [usize; 2] {
     let mut counts = [0; 2];
     for _ in 0..500 {
         let ray = soups::ray(&bare, &mut rng);
-        let expected = reference::closest_hit(&triangles, &ray).map(key);
+        let expected = Answers::naive(&triangles, &ray);
         for tree in &trees {
-            let is_same = tree.closest_hit(&ray).map(key) == expected && tree.any_hit(&ray) == expected.is_some();
+            let is_same = Answers::of(tree, &ray) == expected;
             counts[0] += 1;
             counts[1] += usize::from(!is_same);
             if !is_same {
@@ -166,8 +174,7 @@ fn every_tree_is_the_naive_loop() {
     for (name, differences) in modes {
         let sum = |a: [usize; 2], b: [usize; 2]| [a[0] + b[0], a[1] + b[1]];
         let jobs: Vec<_> = (0..KINDS).flat_map(|kind| (0..scenes).map(move |seed| (kind, seed))).collect();
-        let counts =
-            jobs.into_par_iter().map(|(kind, seed)| differences(kind, seed)).reduce(|| [0; 2], sum);
+        let counts = jobs.into_par_iter().map(|(kind, seed)| differences(kind, seed)).reduce(|| [0; 2], sum);
         println!("{name}: {} of {} answers differ from the naive loop's", counts[1], counts[0]);
         all = sum(all, counts);
     }

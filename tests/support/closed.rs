@@ -1,18 +1,18 @@
 //! Closed meshes: triangles that share the very bits of their corners, each edge between two of them.
 
-use super::scenes::torus;
 use bvhkit::Triangle;
 use glam::Vec3;
 use std::f32::consts::{PI, TAU};
 
 /// One of each kind, of about `n` triangles, about 1 in size around the origin, with names.
 pub fn all(n: usize) -> [(&'static str, Vec<Triangle>); 5] {
+    let spike = |p: Vec3| (5.0 * p.x).cos().powi(4) * (6.0 * p.z.atan2(p.x)).sin().powi(2);
     [
-        ("torus", torus(n)),
         ("globe", globe(n, 1, |p| p)),
         ("needles", globe(n, 4, |p| p)),
         ("cube", globe(n, 1, |p| p / p.abs().max_element())),
-        ("star", globe(n, 1, |p| p * (0.2 + 0.8 * (5.0 * p.x).cos().powi(4) * (6.0 * p.z.atan2(p.x)).sin().powi(2)))),
+        ("star", globe(n, 1, |p| p * (0.2 + 0.8 * spike(p)))),
+        ("knot", knot(n)),
     ]
 }
 
@@ -30,17 +30,34 @@ fn globe(n: usize, unevenness: i32, shape: impl Fn(Vec3) -> Vec3) -> Vec<Triangl
         let (around, down) = (TAU * share(i % columns, columns), PI * share(j, rows));
         shape(Vec3::new(down.sin() * around.cos(), down.cos(), down.sin() * around.sin()))
     };
+    faces(columns, rows, vertex)
+}
+
+/// A tube along a trefoil, which passes close by itself.
+fn knot(n: usize) -> Vec<Triangle> {
+    let columns = ((n / 40) as f32).sqrt() as usize + 3;
+    let rows = (n / 2 / columns).max(12);
+    let trefoil = |u: f32| {
+        let around = 0.6 + 0.25 * (1.5 * u).cos();
+        Vec3::new(around * u.cos(), 0.25 * (1.5 * u).sin(), around * u.sin())
+    };
+    let vertex = |i: usize, j: usize| {
+        // Twice around the middle, three times around the tube it is wound on.
+        let u = 2.0 * TAU * (j % rows) as f32 / rows as f32;
+        let ahead = trefoil(u + 1e-2) - trefoil(u - 1e-2);
+        let (right, up) = ahead.normalize().any_orthonormal_pair();
+        let (sin, cos) = (TAU * (i % columns) as f32 / columns as f32).sin_cos();
+        trefoil(u) + 0.12 * (cos * right + sin * up)
+    };
+    faces(columns, rows, vertex)
+}
+
+/// Two triangles to a cell, none where the cell has no area.
+fn faces(columns: usize, rows: usize, vertex: impl Fn(usize, usize) -> Vec3) -> Vec<Triangle> {
     let cells = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
     let faces = cells.flat_map(|(i, j)| {
         let [a, b, c, d] = [vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1), vertex(i + 1, j)];
         [[a, b, c], [a, c, d]]
     });
     faces.filter(|[a, b, c]| a != b && b != c && c != a).map(|[a, b, c]| Triangle::new(a, b, c)).collect()
-}
-
-/// Every corner scaled, then shifted, not the same on all axes, and rounded: equal ones stay equal.
-pub fn placed(mesh: &[Triangle], scale: f64, offset: f64) -> Vec<Triangle> {
-    let shift = [1.0, -0.75, 0.5].map(|x| x * offset);
-    let place = |p: [f32; 3]| [0, 1, 2].map(|k| (f64::from(p[k]) * scale + shift[k]) as f32);
-    mesh.iter().map(|t| Triangle::new(place(t.a), place(t.b), place(t.c))).collect()
 }
