@@ -126,10 +126,8 @@ fn subnormal_components_beside_ordinary_ones<M: Mode>() {
     // Through corners, where the least step aside may decide.
     assert!(assert_agreement(&scene, &rays) > 20);
     for (i, (triangle, &zero)) in triangles.iter().zip(&zeros).enumerate() {
-        let (mut middle, half) = (triangle.c, M::Number::HALF);
-        for k in 0..3 {
-            middle[k] = (triangle.a[k] * half + triangle.b[k] * half) * half + triangle.c[k] * half;
-        }
+        let (Triangle { a, b, c }, half) = (*triangle, M::Number::HALF);
+        let mut middle = [0, 1, 2].map(|k| (a[k] * half + b[k] * half) * half + c[k] * half);
         middle[i % 3] = zero.origin[i % 3];
         let zero = Ray { origin: middle, ..zero };
         let hits = assert_agreement(&scene, &[zero]);
