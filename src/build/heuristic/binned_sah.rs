@@ -4,6 +4,7 @@ use super::{BuildNode, Heuristic, SahCost, Split, SweepSah};
 use crate::build::parallel;
 use crate::build::reference::PrimRef;
 use crate::geometry::{Aabb, Axis, Scalar};
+use alloc::boxed::Box;
 
 /// References below which one thread bins a node, above which several do.
 const CHUNK: usize = 1 << 15;
@@ -125,9 +126,10 @@ impl<S: Scalar, const N: usize> Bins<S, N> {
         if references.len() <= CHUNK {
             bins.fill(references);
         } else {
-            // Minima, maxima and counts: the order of merging leaves no trace.
+            // Minima, maxima and counts: the order of merging leaves no trace. Boxed, for a worker may have
+            // a small stack and several parts under way.
             let parts = parallel::map(references.chunks(CHUNK).collect(), |chunk| {
-                let mut part = bins.clone();
+                let mut part = Box::new(bins.clone());
                 part.fill(chunk);
                 part
             });
