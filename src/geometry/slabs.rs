@@ -52,7 +52,7 @@ impl<S: Scalar> Slabs<S> {
         }
     }
 
-    /// The t at which the ray enters the slab between two planes of an axis, and leaves it.
+    /// The t at which the ray enters the slab between two planes of an axis, and leaves it. For any ray.
     #[inline(always)]
     pub fn slab(&self, axis: usize, [min, max]: [S; 2]) -> [S; 2] {
         let negative = self.negative[axis];
@@ -70,13 +70,34 @@ impl<S: Scalar> Slabs<S> {
     /// and does not leave it before `t_min`.
     #[inline(always)]
     pub fn entry(&self, aabb: &Aabb<S>) -> Option<S> {
+        let (near, far) = if self.t_min < S::ZERO {
+            // A copy: a reference would keep the slabs out of registers on every other way.
+            let copy = *self;
+            copy.interval_behind(aabb)
+        } else {
+            let (mut near, mut far) = (S::NEG_INFINITY, S::INFINITY);
+            for axis in 0..3 {
+                let (low, high) = (aabb.min[axis], aabb.max[axis]);
+                let (first, last) = if self.negative[axis] { (high, low) } else { (low, high) };
+                near = max((first - self.origin[axis]) * self.inv_near[axis], near);
+                far = min((last - self.origin[axis]) * self.inv_far[axis], far);
+            }
+            (near, far)
+        };
+        (near <= far && far >= self.t_min).then_some(near)
+    }
+
+    /// The interval of t inside the box, for a ray that also looks behind its origin.
+    #[cold]
+    #[inline(never)]
+    fn interval_behind(&self, aabb: &Aabb<S>) -> (S, S) {
         let (mut near, mut far) = (S::NEG_INFINITY, S::INFINITY);
         for axis in 0..3 {
             let [enters, leaves] = self.slab(axis, [aabb.min[axis], aabb.max[axis]]);
             near = max(enters, near);
             far = min(leaves, far);
         }
-        (near <= far && far >= self.t_min).then_some(near)
+        (near, far)
     }
 }
 

@@ -96,7 +96,9 @@ pub(super) fn traverse<S: Scalar>(
 #[inline(always)]
 pub(super) fn enter_children<S: Scalar>(node: &Node<S>, slabs: &Slabs<S>, limit: S) -> ([S; 2], [bool; 2]) {
     if slabs.t_min < S::ZERO {
-        return enter_children_behind(node, slabs, limit);
+        // A copy: a reference would keep the slabs out of registers on every other way.
+        let copy = *slabs;
+        return enter_children_behind(node, &copy, limit);
     }
     // One maximum serves both ends: the far side is computed with its sign turned.
     let mut bounds = S::Lanes4::of_halves(slabs.t_min, -limit);
