@@ -164,7 +164,8 @@ fn differences<M: Mode>(kind: usize, seed: u64) -> [usize; 2] {
 
 #[test]
 fn every_tree_is_the_naive_loop() {
-    let modes: [(&str, fn(usize, u64) -> [usize; 2]); 5] = [
+    type Differences = fn(usize, u64) -> [usize; 2];
+    let modes: [(&str, Differences); 5] = [
         ("Fast", differences::<Fast<Triangle>>),
         ("Watertight", differences::<Watertight<Triangle>>),
         ("Precise", differences::<Precise<Triangle>>),

@@ -8,17 +8,21 @@
 
 mod agreement;
 mod check;
-mod file;
 mod groups;
 mod hierarchy;
 mod ours;
 mod peer;
 mod table;
-mod timing;
 mod workload;
 
+#[path = "../shared/file.rs"]
+mod file;
+#[path = "../shared/obvhs.rs"]
+mod obvhs_peer;
 #[path = "../../tests/support/mod.rs"]
 mod support;
+#[path = "../shared/timing.rs"]
+mod timing;
 
 use criterion::Criterion;
 use hierarchy::Method;

@@ -10,7 +10,7 @@ pub fn all(n: usize) -> [(&'static str, Vec<Triangle>); 5] {
     [
         ("globe", globe(n, 1, |p| p)),
         ("needles", globe(n, 4, |p| p)),
-        ("cube", globe(n, 1, |p| p / p.abs().max_element())),
+        ("cube", cube(n)),
         ("star", globe(n, 1, |p| p * (0.2 + 0.8 * spike(p)))),
         ("knot", knot(n)),
     ]
@@ -31,6 +31,26 @@ fn globe(n: usize, unevenness: i32, shape: impl Fn(Vec3) -> Vec3) -> Vec<Triangl
         shape(Vec3::new(down.sin() * around.cos(), down.cos(), down.sin() * around.sin()))
     };
     faces(columns, rows, vertex)
+}
+
+/// The unit cube, of about `n` triangles, with a corner at the origin: faces lie in the planes in which a
+/// coordinate is 0 or 1, where what is relative to the coordinate vanishes, and many edges are parallel to axes.
+fn cube(n: usize) -> Vec<Triangle> {
+    let cells = ((n / 12) as f32).sqrt() as usize;
+    let faces = (0..3).flat_map(|axis| [0.0, 1.0].map(|side| (axis, side)));
+    let squares = faces.flat_map(|face| (0..cells * cells).map(move |i| (face, i % cells, i / cells)));
+    squares
+        .flat_map(|((axis, side), i, j)| {
+            let vertex = |i: usize, j: usize| {
+                let mut corner = [side; 3];
+                corner[(axis + 1) % 3] = i as f32 / cells as f32;
+                corner[(axis + 2) % 3] = j as f32 / cells as f32;
+                corner
+            };
+            let [a, b, c, d] = [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)];
+            [Triangle::new(a, b, c), Triangle::new(a, c, d)]
+        })
+        .collect()
 }
 
 /// A tube along a trefoil, which passes close by itself.

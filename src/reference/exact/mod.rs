@@ -47,10 +47,12 @@
 mod filter;
 mod fraction;
 mod integers;
+mod primitive;
 mod rounding;
 mod volumes;
 
 pub use fraction::Fraction;
+pub use primitive::Exact;
 
 use crate::geometry::{Ray, Scalar};
 use crate::primitive::Triangle;

@@ -1,0 +1,75 @@
+//! Closed meshes, and where they are put.
+
+use crate::closed;
+use bvhkit::Triangle;
+use std::collections::HashMap;
+use std::fmt;
+
+/// Triangles that share the very bits of their corners.
+#[derive(Clone)]
+pub struct Mesh {
+    pub name: String,
+    pub triangles: Vec<Triangle>,
+    /// Whether every edge belongs to an even number of triangles: then no ray that starts inside
+    /// leaves without a hit.
+    pub is_closed: bool,
+}
+
+impl Mesh {
+    pub fn new(name: impl Into<String>, triangles: Vec<Triangle>) -> Self {
+        Self { name: name.into(), is_closed: is_closed(&triangles), triangles }
+    }
+
+    /// Every corner moved, rounded to `f32`: equal ones stay equal.
+    pub fn placed(&self, place: Place) -> Vec<Triangle> {
+        let place = |corner| place.apply(corner);
+        let moved = |t: &Triangle| Triangle::new(place(t.a), place(t.b), place(t.c));
+        self.triangles.iter().map(moved).collect()
+    }
+}
+
+/// First scaled, then shifted: far from the origin the coordinates are coarse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    pub scale: f64,
+    pub offset: f64,
+}
+
+impl Place {
+    /// As made: about 1 in size, about the origin.
+    pub const HOME: Self = Self { scale: 1.0, offset: 0.0 };
+
+    fn apply(self, corner: [f32; 3]) -> [f32; 3] {
+        // Not the same on all axes: the diagonal is no place like others.
+        let shift = [1.0, -0.75, 0.5].map(|x| x * self.offset);
+        std::array::from_fn(|k| (f64::from(corner[k]) * self.scale + shift[k]) as f32)
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { scale, offset } = self;
+        write!(f, "size {scale:e} at {offset:e}")
+    }
+}
+
+/// Edges by the bits of their ends, whichever comes first; those of no length do not count.
+fn is_closed(triangles: &[Triangle]) -> bool {
+    let mut uses: HashMap<[[u32; 3]; 2], usize> = HashMap::new();
+    for triangle in triangles {
+        // -0 and +0 are one place.
+        let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(|p| p.map(|x| (x + 0.0).to_bits()));
+        for (p, q) in [(a, b), (b, c), (c, a)].into_iter().filter(|(p, q)| p != q) {
+            *uses.entry([p.min(q), p.max(q)]).or_default() += 1;
+        }
+    }
+    uses.values().all(|uses| uses % 2 == 0)
+}
+
+/// Run with each bench: this one has no test harness.
+pub fn check() {
+    for (name, mesh) in closed::all(200) {
+        assert!(is_closed(&mesh), "every edge of the {name} is shared");
+        assert!(!is_closed(&mesh[1..]), "a hole in the {name} is seen");
+    }
+}
