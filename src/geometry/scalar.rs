@@ -35,6 +35,8 @@ pub trait Scalar:
     const NEG_INFINITY: Self;
     /// +infinity.
     const INFINITY: Self;
+    /// The largest number.
+    const MAX: Self;
     /// The distance from 1 to the next larger number: twice the largest relative rounding error.
     const EPSILON: Self;
 
@@ -127,6 +129,7 @@ macro_rules! scalar {
             const HALF: Self = 0.5;
             const INFINITY: Self = $scalar::INFINITY;
             const NEG_INFINITY: Self = $scalar::NEG_INFINITY;
+            const MAX: Self = $scalar::MAX;
             const EPSILON: Self = $scalar::EPSILON;
             const IS_WIDEST: bool = size_of::<Self>() == size_of::<f64>();
             const LARGE_AREA: Self = $large_area;

@@ -25,7 +25,7 @@ use crate::primitive::Intersect;
 /// is flat and its interval a single rounding wide. A t beyond the far side prunes nothing and is
 /// left alone; only if the whole box ends before t_min is the primitive not hit.
 ///
-/// A NaN or infinite t is no hit; -0 becomes +0.
+/// A NaN or infinite t is no hit; -0 becomes +0. The primitive is valid, or the caller makes nothing of the answer.
 #[inline(always)]
 pub(crate) fn accept<P: Intersect>(
     primitive: &P,
@@ -38,7 +38,7 @@ pub(crate) fn accept<P: Intersect>(
     if !in_reach {
         return None;
     }
-    let t = max(t, ray.slabs.entry(&primitive.aabb())?) + P::Scalar::ZERO;
+    let t = max(t, ray.slabs.entry(&primitive.aabb_of_valid())?) + P::Scalar::ZERO;
     (t <= limit && t.is_finite()).then_some((t, payload))
 }
 

@@ -154,6 +154,11 @@ impl<S: Scalar> Primitive for MeshTriangle<'_, S> {
     fn aabb(&self) -> Aabb<S> {
         Watertight(self).aabb()
     }
+
+    #[inline(always)]
+    fn aabb_of_valid(&self) -> Aabb<S> {
+        Watertight(self).aabb_of_valid()
+    }
 }
 
 impl<S: Scalar> Intersect for MeshTriangle<'_, S> {

@@ -116,6 +116,11 @@ impl<S: Scalar> Primitive for Triangle<S> {
     fn aabb(&self) -> Aabb<S> {
         Watertight(self).aabb()
     }
+
+    #[inline(always)]
+    fn aabb_of_valid(&self) -> Aabb<S> {
+        Watertight(self).aabb_of_valid()
+    }
 }
 
 impl<S: Scalar> Intersect for Triangle<S> {

@@ -1,7 +1,7 @@
 //! How exactly a triangle is tested: a choice by type.
 
 use super::sheared::sheared;
-use super::watertight::{bounds, watertight};
+use super::watertight::{bounds, exact_bounds, watertight};
 use super::{Barycentrics, Corners};
 use crate::geometry::{Aabb, PreparedRay, Scalar};
 use crate::primitive::{Intersect, Primitive};
@@ -55,12 +55,24 @@ pub struct Watertight<P>(pub P);
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Precise<P>(pub P);
 
+/// The watertight box of any corners, or their own, invalid one.
+#[inline(always)]
+fn padded<S: Scalar>(corners: [[S; 3]; 3]) -> Aabb<S> {
+    let own = Aabb::of_points(corners);
+    if own.is_valid() { bounds(corners) } else { own }
+}
+
 impl<P: Corners> Primitive for Fast<P> {
     type Scalar = P::Scalar;
 
     #[inline(always)]
     fn aabb(&self) -> Aabb<P::Scalar> {
         Aabb::of_points(self.0.corners())
+    }
+
+    #[inline(always)]
+    fn aabb_of_valid(&self) -> Aabb<P::Scalar> {
+        exact_bounds(self.0.corners())
     }
 }
 
@@ -78,6 +90,11 @@ impl<P: Corners> Primitive for Watertight<P> {
 
     #[inline(always)]
     fn aabb(&self) -> Aabb<P::Scalar> {
+        padded(self.0.corners())
+    }
+
+    #[inline(always)]
+    fn aabb_of_valid(&self) -> Aabb<P::Scalar> {
         bounds(self.0.corners())
     }
 }
@@ -96,6 +113,11 @@ impl<P: Corners<Scalar = f32>> Primitive for Precise<P> {
 
     #[inline(always)]
     fn aabb(&self) -> Aabb {
+        padded(self.0.corners())
+    }
+
+    #[inline(always)]
+    fn aabb_of_valid(&self) -> Aabb {
         bounds(self.0.corners())
     }
 }

@@ -115,17 +115,24 @@ fn plane_depth<S: Scalar>(corners: [[S; 3]; 3], shear: &Shear<S>) -> S {
 /// A.z dx / dz, by no more than 4 u |h.x| + 6 u s. The second part is less than 4 epsilon s, the first is covered by
 /// the padding of the slab test (see `Slabs`): so the ray meets the box. Underflow aside: coordinates must be some
 /// 2^24 times the smallest normal number, or zero.
+///
+/// For valid corners. At the end of the range the margin is cut off.
 #[inline(always)]
 pub(super) fn bounds<S: Scalar>(corners: [[S; 3]; 3]) -> Aabb<S> {
-    let exact = Aabb::of_points(corners);
-    let [x, y, z] = exact.extent();
+    let mut padded = exact_bounds(corners);
+    let [x, y, z] = padded.extent();
     let margin = max(max(x, y), z) * (S::from_f64(4.0) * S::EPSILON);
-    let mut padded = exact;
     for axis in 0..3 {
         let outward = |x: S| margin + S::EPSILON * x.abs();
-        padded.min[axis] = exact.min[axis] - outward(exact.min[axis]);
-        padded.max[axis] = exact.max[axis] + outward(exact.max[axis]);
+        padded.min[axis] = max(padded.min[axis] - outward(padded.min[axis]), -S::MAX);
+        padded.max[axis] = min(padded.max[axis] + outward(padded.max[axis]), S::MAX);
     }
-    // Corners at the end of the range are valid; their margin is beyond it, and so are extents.
-    if padded.is_valid() { padded } else { exact }
+    padded
+}
+
+/// The corners' own box, for valid ones.
+#[inline(always)]
+pub(super) fn exact_bounds<S: Scalar>([a, b, c]: [[S; 3]; 3]) -> Aabb<S> {
+    let each = |f: fn(S, S) -> S| [f(f(a[0], b[0]), c[0]), f(f(a[1], b[1]), c[1]), f(f(a[2], b[2]), c[2])];
+    Aabb { min: each(min), max: each(max) }
 }
