@@ -43,10 +43,12 @@ pub trait Scalar:
     /// No scalar is wider.
     #[doc(hidden)]
     const IS_WIDEST: bool;
-    /// A power of two whose product with a length of about its root, and the inverses of both, are far
-    /// from the ends of the range.
+    /// A power of two: an area below it and above its inverse has rounded as it should.
     #[doc(hidden)]
     const LARGE_AREA: Self;
+    /// The same for a volume, near the ends of the range.
+    #[doc(hidden)]
+    const LARGE_VOLUME: Self;
 
     /// glam's vector of this scalar, in which the arithmetic of primitives is done.
     #[doc(hidden)]
@@ -64,6 +66,9 @@ pub trait Scalar:
     fn turned_by(self, other: Self) -> Self;
     /// The square root, rounded correctly; NaN below zero.
     fn sqrt(self) -> Self;
+    /// `self * other`, rounded, and what the rounding left out, exactly but for underflow.
+    #[doc(hidden)]
+    fn exact_product(self, other: Self) -> [Self; 2];
     /// The largest power of two that is no larger in size, if it is a normal number; else 1.
     #[doc(hidden)]
     fn power_of_two(self) -> Self;
@@ -122,7 +127,7 @@ mod sealed {
 }
 
 macro_rules! scalar {
-    ($scalar:ident, $vec3:ty, $lanes4:ty, $bits:ident, $signed:ident, $libm_sqrt:ident, $large_area:expr) => {
+    ($scalar:ident, $vec3:ty, $lanes4:ty, $bits:ident, $signed:ident, $libm_sqrt:ident, $libm_fma:ident, $large_area:expr, $large_volume:expr) => {
         impl Scalar for $scalar {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -133,6 +138,7 @@ macro_rules! scalar {
             const EPSILON: Self = $scalar::EPSILON;
             const IS_WIDEST: bool = size_of::<Self>() == size_of::<f64>();
             const LARGE_AREA: Self = $large_area;
+            const LARGE_VOLUME: Self = $large_volume;
             type Vec3 = $vec3;
             type Lanes4 = $lanes4;
             type Wide = f64;
@@ -152,6 +158,11 @@ macro_rules! scalar {
                 return $scalar::sqrt(self);
                 #[cfg(not(feature = "std"))]
                 return libm::$libm_sqrt(self);
+            }
+            #[inline(always)]
+            fn exact_product(self, other: Self) -> [Self; 2] {
+                let product = self * other;
+                [product, libm::$libm_fma(self, other, -product)]
             }
             #[inline(always)]
             fn power_of_two(self) -> Self {
@@ -234,8 +245,28 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, glam::Vec3A, glam::Vec4, u32, i32, sqrtf, f32::from_bits((127 + 60) << 23));
-scalar!(f64, glam::DVec3, [f64; 4], u64, i64, sqrt, f64::from_bits((1023 + 600) << 52));
+scalar!(
+    f32,
+    glam::Vec3A,
+    glam::Vec4,
+    u32,
+    i32,
+    sqrtf,
+    fmaf,
+    f32::from_bits((127 + 60) << 23),
+    f32::from_bits((127 + 100) << 23)
+);
+scalar!(
+    f64,
+    glam::DVec3,
+    [f64; 4],
+    u64,
+    i64,
+    sqrt,
+    fma,
+    f64::from_bits((1023 + 600) << 52),
+    f64::from_bits((1023 + 900) << 52)
+);
 
 #[cfg(test)]
 mod tests {

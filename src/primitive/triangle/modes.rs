@@ -1,7 +1,7 @@
 //! How exactly a triangle is tested: a choice by type.
 
 use super::sheared::sheared;
-use super::watertight::{bounds, exact_bounds, watertight};
+use super::watertight::{bounds, exact_bounds, watertight, watertight_widest};
 use super::{Barycentrics, Corners};
 use crate::geometry::{Aabb, PreparedRay, Scalar};
 use crate::primitive::{Intersect, Primitive};
@@ -128,7 +128,7 @@ impl<P: Corners<Scalar = f32>> Intersect for Precise<P> {
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay) -> Option<(f32, Barycentrics)> {
         let corners = self.0.corners().map(|corner| corner.map(Scalar::widen));
-        let (t, Barycentrics { u, v }) = sheared(corners, &ray.wide_shear)?;
+        let (t, Barycentrics { u, v }) = watertight_widest(corners, &ray.wide_shear)?;
         let (t, u, v) = (t as f32, u as f32, v as f32);
         ray.includes(t).then_some((t, Barycentrics { u, v }))
     }
@@ -138,6 +138,7 @@ impl<P: Corners<Scalar = f32>> Intersect for Precise<P> {
 mod tests {
     use super::*;
     use crate::{Ray, Triangle};
+    use alloc::vec::Vec;
 
     const UNIT: Triangle = Triangle { a: [0.0, 0.0, 0.0], b: [1.0, 0.0, 0.0], c: [0.0, 1.0, 0.0] };
 
@@ -229,6 +230,38 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_distance_far_larger_or_smaller_than_the_triangle_is_no_matter() {
+        for (size, distance) in [(1e6f32, 1e30f32), (1e3, 1e33), (1e8, 1e25), (3e-9, 1e-28), (1e-8, 1e-25)] {
+            let corner = |x: f32, y: f32| [x * size, y * size, distance];
+            let triangle = Triangle::new(corner(-1.0, -1.0), corner(1.0, -1.0), corner(0.0, 1.0));
+            let ray = Ray::new([0.0, 0.1 * size, 0.0], [0.0, 0.0, 1.0]).prepare();
+            let t = [Watertight(triangle).intersect(&ray), Precise(triangle).intersect(&ray)];
+            assert!(t.iter().all(|hit| hit.is_some_and(|(t, _)| t == distance)), "{size} {distance}: {t:?}");
+        }
+    }
+
+    /// All the differences of products are zero once rounded, in `f64`, on the one face ahead of the origin.
+    #[test]
+    fn a_flat_tetrahedron_around_the_origin_does_not_leak_in_f64() {
+        let [a, b] = [-1.667_231_511_108_307_4, -1.562_852_918_119_195_2];
+        let corners = [
+            [a, -1.667_231_511_108_307_6, 1.0],
+            [b, -1.562_852_918_119_195, 1.0],
+            [-1.804_301_382_870_361_3, -1.804_301_382_870_361_1, 1.0],
+            [1.634_375_342_070_289_8, 1.634_375_342_070_289_8, -1.0],
+        ];
+        let faces = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]].map(|face| face.map(|i| corners[i]));
+        let ray = Ray::new([0.0f64; 3], [0.0, 0.0, 1.0]).prepare();
+        let hits: Vec<_> =
+            faces.iter().filter_map(|&[a, b, c]| Triangle::new(a, b, c).intersect(&ray)).collect();
+        assert!(!hits.is_empty());
+        assert!(
+            hits.iter().all(|(t, _)| (t - 9_674_296_178_797.0 / 1_626_008_410_828_155.0).abs() < 1e-9),
+            "{hits:?}"
+        );
     }
 
     #[test]

@@ -11,14 +11,14 @@
 //! 3. Its own box is met (see [`bounds`]), so the tree and the naive loop both accept it.
 
 use super::Barycentrics;
-use super::sheared::{is_outside, sheared};
+use super::sheared::is_outside;
 use crate::geometry::{Aabb, Ray, Scalar, Shear, Vector, max, min};
 
 /// As [`sheared`], but what rounding leaves open is computed once more in the wide scalar: a difference that is
 /// zero, as Woop, Benthin and Wald do; an area out of the range; and t where its sign is in doubt, so that a
 /// ray which starts a few roundings from a triangle is told on which side it does.
 ///
-/// For `f64` there is none wider.
+/// There is none wider than `f64`: see [`watertight_widest`].
 #[inline(always)]
 pub(super) fn watertight<S: Scalar>(
     corners: [[S; 3]; 3],
@@ -26,7 +26,7 @@ pub(super) fn watertight<S: Scalar>(
     shear: &Shear<S>,
 ) -> Option<(S, Barycentrics<S>)> {
     if S::IS_WIDEST {
-        return sheared(corners, shear);
+        return watertight_widest(corners, shear);
     }
     let [x, y, z] = shear.apply(corners);
     let weights = x.cross(y);
@@ -35,7 +35,11 @@ pub(super) fn watertight<S: Scalar>(
         return None;
     }
     let (area, volume) = (a + b + c, weights.dot(z));
-    let is_inside_for_sure = a != S::ZERO && b != S::ZERO && c != S::ZERO && is_ordinary(area);
+    let is_inside_for_sure = a != S::ZERO
+        && b != S::ZERO
+        && c != S::ZERO
+        && is_within(area, S::LARGE_AREA)
+        && is_within(volume, S::LARGE_VOLUME);
     if is_inside_for_sure && (is_ahead(z.to_array()) || volume.abs() > doubt(x, y, z)) {
         Some((shear.t(volume / area), Barycentrics { u: b / area, v: c / area }))
     } else {
@@ -43,11 +47,58 @@ pub(super) fn watertight<S: Scalar>(
     }
 }
 
-/// Neither so large nor so small that its product with a length may leave the range.
+/// Neither so large nor so small that a part of it may have left the range.
 #[inline(always)]
-fn is_ordinary<S: Scalar>(area: S) -> bool {
-    let area = area.abs();
-    area > S::ONE / S::LARGE_AREA && area < S::LARGE_AREA
+fn is_within<S: Scalar>(x: S, large: S) -> bool {
+    let x = x.abs();
+    x > S::ONE / large && x < large
+}
+
+/// The same in the widest scalar: where rounding leaves something open, what it left out of the products is
+/// added.
+#[inline(always)]
+pub(super) fn watertight_widest<S: Scalar>(
+    corners: [[S; 3]; 3],
+    shear: &Shear<S>,
+) -> Option<(S, Barycentrics<S>)> {
+    let [x, y, z] = shear.apply(corners);
+    let weights = x.cross(y);
+    let [a, b, c] = weights.to_array();
+    if is_outside([a, b, c]) {
+        return None;
+    }
+    let (area, volume) = (a + b + c, weights.dot(z));
+    let is_inside_for_sure = a != S::ZERO && b != S::ZERO && c != S::ZERO;
+    if is_inside_for_sure && (is_ahead(z.to_array()) || volume.abs() > doubt(x, y, z)) {
+        Some((shear.t(volume / area), Barycentrics { u: b / area, v: c / area }))
+    } else {
+        let (depth, at) = settle_widest(x.to_array(), y.to_array(), z.to_array())?;
+        Some((shear.t(depth), at))
+    }
+}
+
+/// The depth of the hit of a triangle whose corners are at `x`, `y` and `z` in the ray's frame; none if the ray
+/// passes outside, or sees no area.
+#[cold]
+#[inline(never)]
+fn settle_widest<S: Scalar>(x: [S; 3], y: [S; 3], z: [S; 3]) -> Option<(S, Barycentrics<S>)> {
+    let weight = |i: usize, j: usize| {
+        let ([p, p_rest], [q, q_rest]) = (x[i].exact_product(y[j]), x[j].exact_product(y[i]));
+        (p - q) + (p_rest - q_rest)
+    };
+    let [a, b, c] = [weight(1, 2), weight(2, 0), weight(0, 1)];
+    let area = a + b + c;
+    if is_outside([a, b, c]) || area == S::ZERO {
+        return None;
+    }
+    let at = Barycentrics { u: b / area, v: c / area };
+    let depth = if is_within(area, S::LARGE_AREA) {
+        (a * z[0] + b * z[1] + c * z[2]) / area
+    } else {
+        // Divided first: what is left of products may be tiny.
+        a / area * z[0] + at.u * z[1] + at.v * z[2]
+    };
+    Some((depth, at))
 }
 
 /// All corners are, and so the hit is.
@@ -65,7 +116,7 @@ fn doubt<S: Scalar>(x: S::Vec3, y: S::Vec3, z: S::Vec3) -> S {
         max(max(a.abs(), b.abs()), c.abs())
     };
     let (x, y, z) = (largest(x), largest(y), largest(z));
-    S::from_f64(32.0) * S::EPSILON * z * (z * (x + y) + x * y)
+    S::from_f64(40.0) * S::EPSILON * z * (z * (x + y) + x * y)
 }
 
 /// The hit of a triangle whose corners are at `x` and `y` in the ray's frame, computed in the wide scalar; none
