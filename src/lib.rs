@@ -42,8 +42,8 @@
 //! - **The naive answer.** The hit is that of the loop over all primitives with the same primitive
 //!   test: same t bits, same index, the lowest index where several have the same t. It does not
 //!   depend on heuristic, leaf size or number of threads. How: [`Intersect::intersect`].
-//! - **No leaks.** A ray from inside a closed mesh hits it, at edges and corners too, unless its triangles
-//!   are [`Fast`].
+//! - **No leaks.** A ray from inside a closed mesh, by more than rounding, hits it, at edges and corners too,
+//!   unless its triangles are [`Fast`]: see [`Watertight`].
 //! - **No panics on data.** NaN, infinities, empty input, degenerate primitives, absurd options: each
 //!   has a documented answer or a typed error, [`BuildError`]. (Your own trait implementations may
 //!   panic, of course.)

@@ -95,7 +95,7 @@ fn judge_aimed(
         match t {
             Some(t) => tally.ulps.push(tracer.ulps(&t, hit.t).abs() as f32),
             None => {
-                tally.slack = tally.slack.max(exact::edge_slack(triangle, &ray).unwrap_or_default());
+                tally.slack = tally.slack.max(exact::edge_slack(triangle, &ray).unwrap_or(f64::INFINITY));
                 tally.beside = tally.beside.max(miss::roundings(triangle, &ray));
             }
         }

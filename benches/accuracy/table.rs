@@ -21,7 +21,7 @@ const HEADER: [&str; 11] = [
 ];
 
 const LEGEND: &str = "\
-obvhs 0.4, its medium presets; bvh 0.13. Four closed meshes at eight places. Rays from points exactly inside, aimed at
+obvhs 0.4, its medium presets; bvh 0.13. Six closed meshes at eight places. Rays from points exactly inside, aimed at
 corners and at points of edges, with t from 0 on; each is answered in exact arithmetic too.
 Closest: million closest hits a second on one thread, of primary, diffuse, shadow and random rays in a torus of
   100,000 triangles; medians, contestants taking turns. In brackets, over the default's, Watertight.

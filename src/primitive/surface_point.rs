@@ -64,7 +64,10 @@ impl<S: Scalar> SurfacePoint<S> {
     /// Moved along the normal until it is out of the box of `error`, then away from the surface to the
     /// next number on each axis (Pharr, Jakob and Humphreys, Physically Based Rendering, 4th edition, 6.8.6).
     ///
-    /// Of 2,961,717 rays from random triangles, slivers and grazing directions among them, 0 hit their own in
+    /// `direction` rises from the surface by more than 1e-6 of its length in `f32`: below, the rounding of the normal
+    /// and of the direction decides which side is meant, and 6 of 50,000 rays hit at 1e-7.
+    ///
+    /// Of 2,961,717 rays from random triangles, slivers and rises down to 1e-5 among them, 0 hit their own in
     /// [`Watertight`](crate::Watertight) and [`Precise`](crate::Precise) mode, 93,024 in [`Fast`](crate::Fast), at a
     /// median distance of 1e-7 of the triangle's size. Refused: the offset of Wachter and Binder (A Fast and Robust
     /// Method for Avoiding Self-Intersection, Ray Tracing Gems, 2019), 0 and 5,203 at 3e-5, and the error bound

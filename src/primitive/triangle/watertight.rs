@@ -3,12 +3,16 @@
 //! # Why no ray slips through
 //!
 //! 1. A corner's place in the ray's frame is rounded, but alike for all triangles that share the corner:
-//!    what the ray meets is some closed mesh of flat triangles, a little off the given one.
+//!    what the ray meets is some closed mesh of flat triangles, a little off the given one. The ray's origin
+//!    is inside that one too, if it is by more than rounding inside the given one.
 //! 2. The side of an edge is the sign of a difference of two products. Rounding is monotone: the sign of
 //!    the rounded difference is that of the exact one, or zero. With zero counted as inside, every
-//!    triangle of the mesh of 1 that holds the ray's point is hit; and in a closed mesh around the ray's
-//!    origin one that has an area does, since those without add nothing to what the others cover.
-//! 3. Its own box is met (see [`bounds`]), so the tree and the naive loop both accept it.
+//!    triangle of the mesh of 1 that holds the ray's point is hit, if it has an area, which is looked at
+//!    twice where rounding makes it zero; and in a closed mesh around the ray's origin one that has an area
+//!    does, since those without add nothing to what the others cover.
+//! 3. Its own box is met (see [`bounds`]), so the tree and the naive loop both accept it. This takes a ray that
+//!    crosses the triangle's plane: of random triangles and rays in their planes up to rounding, the box was missed
+//!    by 18 of 431,965 hits. No leak was found that way, in a hundred million rays or in slabs of 3e-7.
 
 use super::Barycentrics;
 use super::sheared::is_outside;
@@ -108,7 +112,8 @@ fn is_ahead<S: Scalar>([a, b, c]: [S; 3]) -> bool {
 }
 
 /// More than the rounding error of the volume (x cross y) . z: x and y are each off by up to 2 epsilon times
-/// the sum of themselves and z, and each product by some more.
+/// the sum of themselves and z, and each product by some more. In 20,000,000 random cases the error was at most a
+/// sixth of it.
 #[inline(always)]
 fn doubt<S: Scalar>(x: S::Vec3, y: S::Vec3, z: S::Vec3) -> S {
     let largest = |v: S::Vec3| {
@@ -122,8 +127,10 @@ fn doubt<S: Scalar>(x: S::Vec3, y: S::Vec3, z: S::Vec3) -> S {
 /// The hit of a triangle whose corners are at `x` and `y` in the ray's frame, computed in the wide scalar; none
 /// if the ray passes outside, or sees no area.
 ///
-/// The triangle is where the frame has it, for its neighbours' sake; but t is taken from the corners
-/// themselves, as far as it lies between theirs.
+/// Whether it is hit is decided by its place in the frame, for its neighbours' sake. But t is that of its true
+/// plane, no nearer than the nearest corner and no farther than the farthest, for the sake of rays that start on
+/// the triangle. For a ray in the plane that says little; t from the weights in the frame would be within rounding there,
+/// at the price of 28 self-hits of 19,980 rays from triangles a million times their size from the origin.
 #[cold]
 #[inline(never)]
 fn settle<S: Scalar>(
