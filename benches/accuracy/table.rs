@@ -27,7 +27,7 @@ Closest: million closest hits a second on one thread, of primary, diffuse, shado
   100,000 triangles; medians, contestants taking turns. In brackets, over the default's, Watertight.
 Leaks: rays that leave the mesh, of those that exactly hit something, which all do.
 False hits: hits whose triangle the ray misses, of all hits. Slack: by how much of the triangle's height (dust is missed
-  by many times its own). Miss: the same in roundings of f32 (2^-24) of the triangle's distance.
+  by many times its own; inf: the ray lies in its plane). Miss: the same in roundings of f32 (2^-24) of the triangle's distance.
 Wrong triangle: hits, false ones included, whose triangle is not, or not together with others, exactly the nearest.
 T error: of hits that are not false, from the exact t on the triangle that was named, in ulps of the
   contestant's scalar.
