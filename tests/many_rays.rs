@@ -15,7 +15,6 @@ mod common {
 mod closed;
 
 use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, SweepSah};
-use bvhkit::reference::exact;
 use bvhkit::{Bvh, Fast, Intersect, Precise, Ray, Scalar, Triangle, Watertight};
 use common::answers::Answers;
 use common::modes::Mode;
@@ -33,17 +32,10 @@ fn wanted() -> usize {
 const PLACES: [(f64, f64); 8] =
     [(1e-6, 0.0), (1.0, 0.0), (1e6, 0.0), (1e-6, 1e-3), (1.0, 1e3), (1e6, 1e6), (1e-6, 1.0), (1.0, 1e6)];
 
-/// Every corner scaled, then shifted, not the same on all axes, and rounded: equal ones stay equal.
-fn placed(mesh: &[Triangle], scale: f64, offset: f64) -> Vec<Triangle> {
-    let shift = [1.0, -0.75, 0.5].map(|x| x * offset);
-    let place = |p: [f32; 3]| [0, 1, 2].map(|k| (f64::from(p[k]) * scale + shift[k]) as f32);
-    mesh.iter().map(|t| Triangle::new(place(t.a), place(t.b), place(t.c))).collect()
-}
-
 /// Rays of one origin.
 const BATCH: usize = 20_000;
 
-/// A point in the mesh's box that is exactly inside: along a ray that passes no edge the number of hits is odd.
+/// A point in the mesh's box that is exactly inside.
 fn origin_inside(mesh: &[Triangle], rng: &mut Pcg64Mcg) -> [f32; 3] {
     let corners = || mesh.iter().flat_map(|t| [t.a, t.b, t.c]);
     let end = |axis: usize, pick: fn(f32, f32) -> f32| corners().map(|p| p[axis]).reduce(pick).unwrap();
@@ -53,13 +45,7 @@ fn origin_inside(mesh: &[Triangle], rng: &mut Pcg64Mcg) -> [f32; 3] {
             min + (max - min) * rng.random::<f32>()
         });
         let direction = [0.0; 3].map(|_: f32| rng.random_range(-1.0..1.0));
-        let ray = Ray::new(point, direction);
-        let hits = exact::hits(mesh, &ray);
-        let is_clear = |hit: &exact::ExactHit| {
-            hit.t.cmp_scalar(0.0f32).is_gt()
-                && exact::edge_slack(&mesh[hit.index], &ray).is_some_and(|slack| slack < 0.0)
-        };
-        if hits.len() % 2 == 1 && hits.iter().all(is_clear) {
+        if closed::encloses(mesh, &Ray::new(point, direction)) == Some(true) {
             return point;
         }
     }
@@ -103,7 +89,7 @@ fn no_ray_leaves_a_closed_mesh() {
     let (mut rays, mut leaking) = (0, [0; 5]);
     for (name, mesh) in &meshes {
         for (scale, offset) in PLACES {
-            let mesh = placed(mesh, scale, offset);
+            let mesh = closed::placed(mesh, scale, offset);
             let mut rng = Pcg64Mcg::seed_from_u64(1);
             let aimed: Vec<Ray> = (0..batches)
                 .flat_map(|_| {

@@ -1,5 +1,6 @@
 //! Rays that find gaps: from points exactly inside, at corners and edges. At random, rays find none.
 
+use crate::closed::encloses;
 use crate::truth::Truth;
 use bvhkit::{Aabb, Primitive, Ray};
 use glam::Vec3;
@@ -52,7 +53,7 @@ fn origin(truth: &Truth<'_>, is_closed: bool, rng: &mut Pcg32) -> Vec3 {
     loop {
         let point = min + (max - min) * Vec3::from_array(rng.random());
         let anywhere = Vec3::from_array(rng.random()) - 0.5;
-        if !is_closed || truth.encloses(&Ray::new(point, anywhere)) == Some(true) {
+        if !is_closed || encloses(truth.triangles, &Ray::new(point, anywhere)) == Some(true) {
             return point;
         }
     }

@@ -22,9 +22,7 @@ impl Mesh {
 
     /// Every corner moved, rounded to `f32`: equal ones stay equal.
     pub fn placed(&self, place: Place) -> Vec<Triangle> {
-        let place = |corner| place.apply(corner);
-        let moved = |t: &Triangle| Triangle::new(place(t.a), place(t.b), place(t.c));
-        self.triangles.iter().map(moved).collect()
+        closed::placed(&self.triangles, place.scale, place.offset)
     }
 }
 
@@ -38,12 +36,6 @@ pub struct Place {
 impl Place {
     /// As made: about 1 in size, about the origin.
     pub const HOME: Self = Self { scale: 1.0, offset: 0.0 };
-
-    fn apply(self, corner: [f32; 3]) -> [f32; 3] {
-        // Not the same on all axes: the diagonal is no place like others.
-        let shift = [1.0, -0.75, 0.5].map(|x| x * self.offset);
-        std::array::from_fn(|k| (f64::from(corner[k]) * self.scale + shift[k]) as f32)
-    }
 }
 
 impl fmt::Display for Place {

@@ -28,15 +28,4 @@ impl<'a> Truth<'a> {
         }
         closest
     }
-
-    /// Whether the point is enclosed and on no triangle: along a ray that passes no edge, the number of hits
-    /// is odd. `None` if this ray passes an edge or does not say.
-    pub fn encloses(&self, ray: &Ray) -> Option<bool> {
-        let hits = exact::hits(self.triangles, ray);
-        let is_generic = hits.iter().all(|hit| {
-            let slack = exact::edge_slack(&self.triangles[hit.index], ray);
-            slack.is_some_and(|slack| slack < 0.0) && hit.t.cmp_scalar(0.0f32).is_gt()
-        });
-        is_generic.then_some(hits.len() % 2 == 1)
-    }
 }

@@ -1,6 +1,7 @@
 //! Closed meshes: triangles that share the very bits of their corners, each edge between two of them.
 
-use bvhkit::Triangle;
+use bvhkit::reference::exact;
+use bvhkit::{Ray, Triangle};
 use glam::Vec3;
 use std::f32::consts::{PI, TAU};
 
@@ -14,6 +15,25 @@ pub fn all(n: usize) -> [(&'static str, Vec<Triangle>); 5] {
         ("star", globe(n, 1, |p| p * (0.2 + 0.8 * spike(p)))),
         ("knot", knot(n)),
     ]
+}
+
+/// Every corner scaled, then shifted, not the same on all axes, for the diagonal is no place like others; and
+/// rounded: equal ones stay equal.
+pub fn placed(mesh: &[Triangle], scale: f64, offset: f64) -> Vec<Triangle> {
+    let shift = [1.0, -0.75, 0.5].map(|x| x * offset);
+    let place = |p: [f32; 3]| [0, 1, 2].map(|k| (f64::from(p[k]) * scale + shift[k]) as f32);
+    mesh.iter().map(|t| Triangle::new(place(t.a), place(t.b), place(t.c))).collect()
+}
+
+/// Whether the ray's origin is exactly inside and on no triangle: along a ray that passes no edge, the number of
+/// hits is odd. `None` if this ray passes an edge or does not say.
+pub fn encloses(mesh: &[Triangle], ray: &Ray) -> Option<bool> {
+    let hits = exact::hits(mesh, ray);
+    let is_generic = hits.iter().all(|hit| {
+        let slack = exact::edge_slack(&mesh[hit.index], ray);
+        slack.is_some_and(|slack| slack < 0.0) && hit.t.cmp_scalar(0.0f32).is_gt()
+    });
+    is_generic.then_some(hits.len() % 2 == 1)
 }
 
 /// A sphere by columns from pole to pole, then shaped. With an `unevenness` of 1 its triangles are alike; with 4
