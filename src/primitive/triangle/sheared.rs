@@ -15,15 +15,41 @@ use crate::geometry::{Scalar, Shear, Vector, max, min};
 /// triangle at a time best.
 #[inline(always)]
 pub(super) fn sheared<S: Scalar>(corners: [[S; 3]; 3], shear: &Shear<S>) -> Option<(S, Barycentrics<S>)> {
-    let [x, y, z] = shear.apply(corners);
-    let weights = x.cross(y);
-    let [a, b, c] = weights.to_array();
-    if is_outside([a, b, c]) {
-        return None;
-    }
     // Without area, t is NaN and no hit.
-    let (area, volume) = (a + b + c, weights.dot(z));
-    Some((shear.t(volume / area), Barycentrics { u: b / area, v: c / area }))
+    Sight::new(corners, shear).map(|sight| sight.hit(shear))
+}
+
+/// A triangle around the ray's point, as far as rounding tells, in the ray's frame.
+pub(super) struct Sight<S: Scalar> {
+    /// The corners, one in each lane.
+    pub corners: [S::Vec3; 3],
+    /// The corners' weights, times the area.
+    pub weights: [S; 3],
+    pub area: S,
+    /// The depth of the hit, times the area.
+    pub volume: S,
+}
+
+impl<S: Scalar> Sight<S> {
+    /// None if the ray passes outside.
+    #[inline(always)]
+    pub fn new(corners: [[S; 3]; 3], shear: &Shear<S>) -> Option<Self> {
+        let [x, y, z] = shear.apply(corners);
+        let cross = x.cross(y);
+        let weights = cross.to_array();
+        if is_outside(weights) {
+            return None;
+        }
+        let [a, b, c] = weights;
+        Some(Self { corners: [x, y, z], weights, area: a + b + c, volume: cross.dot(z) })
+    }
+
+    /// t and the weights.
+    #[inline(always)]
+    pub fn hit(&self, shear: &Shear<S>) -> (S, Barycentrics<S>) {
+        let Self { weights: [_, b, c], area, volume, .. } = *self;
+        (shear.t(volume / area), Barycentrics { u: b / area, v: c / area })
+    }
 }
 
 /// On different sides of two edges. A NaN may hide a side, but does not make one up.
