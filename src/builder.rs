@@ -4,7 +4,9 @@ use crate::build::heuristic::{BinnedSah, BuildNode, Heuristic, Split};
 use crate::build::{Flaw, PrimRef, ThreadPoolError, build_tree, in_pool};
 use crate::bvh::Bvh;
 use crate::geometry::Scalar;
-use crate::primitive::Primitive;
+use crate::layout::{Layout, WideTree};
+use crate::primitive::{Intersect, Primitive};
+use crate::simd::{Backend, InstructionSet};
 use alloc::vec::Vec;
 use core::fmt;
 use core::marker::PhantomData;
@@ -70,6 +72,10 @@ pub enum BuildError {
     },
     /// `max_leaf_size` is 0.
     ZeroLeafSize,
+    /// The layout needs more memory than its references can tell apart: see [`WideTree`].
+    TooLarge,
+    /// The processor, or this build of the crate, does not have the instruction set asked for.
+    NoInstructionSet(InstructionSet),
     /// The threads asked for could not be had.
     ThreadPool(ThreadPoolError),
 }
@@ -92,6 +98,12 @@ impl fmt::Display for BuildError {
             Self::ZeroLeafSize => {
                 f.write_str("max_leaf_size is 0, but a leaf has a primitive: give 1 or more")
             }
+            Self::TooLarge => {
+                f.write_str("the layout exceeds 16 GiB: use the layout Tree, or split the scene")
+            }
+            Self::NoInstructionSet(set) => {
+                write!(f, "no {set} here: InstructionSet::available() tells what there is")
+            }
             Self::ThreadPool(error) => error.fmt(f),
         }
     }
@@ -103,12 +115,12 @@ impl core::error::Error for BuildError {}
 ///
 /// ```
 /// use bvhkit::heuristic::Median;
-/// use bvhkit::{Bvh, OnInvalid, Quality, Sphere};
+/// use bvhkit::{Bvh, OnInvalid, Quality, Sphere, Tree};
 ///
 /// let spheres: Vec<Sphere> = (0..100).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.5)).collect();
 /// let quick = Bvh::builder().quality(Quality::Fast).build(&spheres)?;
-/// let simple = Bvh::builder().heuristic(Median).max_leaf_size(1).threads(1).build(&spheres)?;
-/// assert_eq!(simple.report().max_depth, 7);
+/// let simple = Bvh::builder().heuristic(Median).max_leaf_size(1).threads(1).layout::<Tree>();
+/// assert_eq!(simple.build(&spheres)?.report().max_depth, 7);
 ///
 /// let broken = [Sphere::new([0.0; 3], 1.0), Sphere::new([f32::NAN; 3], 1.0)];
 /// let error = Bvh::build(&broken).unwrap_err();
@@ -121,44 +133,67 @@ impl core::error::Error for BuildError {}
 /// # Ok::<(), bvhkit::BuildError>(())
 /// ```
 #[derive(Debug)]
-pub struct Builder<P, H = Quality> {
+pub struct Builder<P: Primitive, H = Quality, L = WideTree<<P as Primitive>::Scalar>> {
     heuristic: H,
     max_leaf_size: usize,
     threads: Option<usize>,
     on_invalid: OnInvalid,
-    primitive: PhantomData<fn(P)>,
+    instruction_set: Option<InstructionSet>,
+    result: PhantomData<fn() -> (P, L)>,
 }
 
-impl<P, H: Clone> Clone for Builder<P, H> {
+impl<P: Primitive, H: Clone, L> Clone for Builder<P, H, L> {
     fn clone(&self) -> Self {
         Self { heuristic: self.heuristic.clone(), ..*self }
     }
 }
 
-impl<P: Primitive> Builder<P, Quality> {
+impl<P: Intersect> Builder<P, Quality> {
     pub(crate) fn new() -> Self {
         Self {
             heuristic: Quality::default(),
             max_leaf_size: 4,
             threads: None,
             on_invalid: OnInvalid::default(),
-            primitive: PhantomData,
+            instruction_set: None,
+            result: PhantomData,
         }
     }
 }
 
-impl<P: Primitive, H: Heuristic<P::Scalar>> Builder<P, H> {
+impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// A preset, in place of the heuristic chosen so far.
     #[must_use]
-    pub fn quality(self, quality: Quality) -> Builder<P, Quality> {
+    pub fn quality(self, quality: Quality) -> Builder<P, Quality, L> {
         self.heuristic(quality)
     }
 
     /// One of [`heuristic`](crate::heuristic)'s, or your own, in place of the one chosen so far.
     #[must_use]
-    pub fn heuristic<G: Heuristic<P::Scalar>>(self, heuristic: G) -> Builder<P, G> {
-        let Self { max_leaf_size, threads, on_invalid, primitive, .. } = self;
-        Builder { heuristic, max_leaf_size, threads, on_invalid, primitive }
+    pub fn heuristic<G: Heuristic<P::Scalar>>(self, heuristic: G) -> Builder<P, G, L> {
+        let Self { max_leaf_size, threads, on_invalid, instruction_set, result, .. } = self;
+        Builder { heuristic, max_leaf_size, threads, on_invalid, instruction_set, result }
+    }
+
+    /// How the hierarchy lies in memory, in place of the [`WideTree`] of 16: another [`Layout`].
+    ///
+    /// ```
+    /// use bvhkit::{Bvh, Sphere, Tree};
+    /// let spheres = [Sphere::new([0.0; 3], 1.0), Sphere::new([5.0, 0.0, 0.0], 1.0)];
+    /// let bvh: Bvh<Sphere, Tree> = Bvh::builder().layout::<Tree>().max_leaf_size(1).build(spheres)?;
+    /// assert_eq!(bvh.report().inner_nodes, 1);
+    /// # Ok::<(), bvhkit::BuildError>(())
+    /// ```
+    #[must_use]
+    pub fn layout<M: Layout<P>>(self) -> Builder<P, H, M> {
+        let Self { heuristic, max_leaf_size, threads, on_invalid, instruction_set, .. } = self;
+        Builder { heuristic, max_leaf_size, threads, on_invalid, instruction_set, result: PhantomData }
+    }
+
+    /// What queries are computed with, [`InstructionSet::best`] unless set: to compare and to test.
+    #[must_use]
+    pub fn instruction_set(self, instruction_set: InstructionSet) -> Self {
+        Self { instruction_set: Some(instruction_set), ..self }
     }
 
     /// The largest number of primitives in a leaf, 4 unless set; surface area heuristics make
@@ -193,17 +228,22 @@ impl<P: Primitive, H: Heuristic<P::Scalar>> Builder<P, H> {
     ///
     /// # Errors
     /// [`BuildError`], whose messages say what is wrong, where, and what to do.
-    pub fn build(self, primitives: impl IntoIterator<Item = P>) -> Result<Bvh<P>, BuildError> {
+    pub fn build(self, primitives: impl IntoIterator<Item = P>) -> Result<Bvh<P, L>, BuildError> {
         if self.max_leaf_size == 0 {
             return Err(BuildError::ZeroLeafSize);
         }
+        let backend = match self.instruction_set {
+            Some(set) => Backend::of(set).ok_or(BuildError::NoInstructionSet(set))?,
+            None => Backend::best(),
+        };
         let primitives = collect(primitives.into_iter())?;
         let References { mut valid, skipped } = self.references(&primitives)?;
         let Self { heuristic, max_leaf_size, threads, .. } = &self;
-        let mut tree = in_pool(*threads, || build_tree(&mut valid, heuristic, *max_leaf_size))
+        let tree = in_pool(*threads, || build_tree(&mut valid, heuristic, *max_leaf_size))
             .map_err(BuildError::ThreadPool)?;
-        tree.indices.extend(skipped);
-        Ok(Bvh::from_parts(tree, primitives))
+        drop(valid);
+        let layout = L::lay_out(tree, &primitives).ok_or(BuildError::TooLarge)?;
+        Ok(Bvh::from_parts(layout, backend, primitives, skipped))
     }
 
     fn references(&self, primitives: &[P]) -> Result<References<P::Scalar>, BuildError> {

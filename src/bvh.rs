@@ -3,11 +3,14 @@
 use crate::build::heuristic::Heuristic;
 use crate::builder::{BuildError, Builder, Quality};
 use crate::geometry::{Aabb, Ray};
+use crate::layout::{Layout, WideTree};
 use crate::primitive::{Intersect, Primitive};
-use crate::query::{Hit, Hits, Recorder, Scene, any_hit, closest_hit};
-use crate::tree::{InvariantError, Tree, TreeReport};
+use crate::query::{Any, Ask, Closest, Hit, Hits, Recorder, Traverse, ask_all};
+use crate::simd::{Backend, InstructionSet};
+use crate::tree::{InvariantError, TreeReport, check};
 use alloc::vec::Vec;
 use core::fmt;
+use core::marker::PhantomData;
 
 /// A bounding volume hierarchy over primitives of type `P`, owned (`Bvh<Sphere>`) or borrowed
 /// (`Bvh<&Sphere>`).
@@ -35,15 +38,15 @@ use core::fmt;
 /// # Ok::<(), bvhkit::BuildError>(())
 /// ```
 #[derive(Clone)]
-pub struct Bvh<P: Primitive> {
-    tree: Tree<P::Scalar>,
-    /// In the order of the tree's slots, for locality; skipped ones last.
+pub struct Bvh<P: Primitive, L: Layout<P> = WideTree<<P as Primitive>::Scalar>> {
+    layout: L,
+    backend: Backend,
+    /// In the order of the input.
     primitives: Vec<P>,
-    /// The slot of each input index: the inverse of `tree.indices`.
-    slots: Vec<u32>,
+    skipped: Vec<u32>,
 }
 
-impl<P: Primitive> Bvh<P> {
+impl<P: Intersect> Bvh<P> {
     /// Builds with the good defaults: [`Quality::Balanced`], on all threads.
     ///
     /// # Errors
@@ -59,44 +62,32 @@ impl<P: Primitive> Bvh<P> {
     {
         Builder::new()
     }
+}
 
-    /// `tree` and `primitives` in the order of its slots.
-    pub(crate) fn from_parts(tree: Tree<P::Scalar>, mut primitives: Vec<P>) -> Self {
-        let mut slots = alloc::vec![0; tree.indices.len()];
-        for (slot, &index) in (0..).zip(&tree.indices) {
-            slots[index as usize] = slot;
-        }
-        // Follows the cycles of the permutation: each swap puts one primitive in its place.
-        let mut target = slots.clone();
-        for place in 0..target.len() {
-            while target[place] as usize != place {
-                let slot = target[place] as usize;
-                primitives.swap(place, slot);
-                target.swap(place, slot);
-            }
-        }
-        Self { tree, primitives, slots }
+impl<P: Primitive, L: Layout<P>> Bvh<P, L> {
+    pub(crate) fn from_parts(layout: L, backend: Backend, primitives: Vec<P>, skipped: Vec<u32>) -> Self {
+        Self { layout, backend, primitives, skipped }
     }
 
     /// The number of primitives in the tree; skipped ones are not counted.
     pub fn len(&self) -> usize {
-        self.tree.len()
+        self.layout.len()
     }
 
     /// No primitives in the tree: nothing will be hit.
     pub fn is_empty(&self) -> bool {
-        self.tree.is_empty()
+        self.len() == 0
     }
 
     /// The box around all primitives in the tree; [`Aabb::EMPTY`] if there is none.
     pub fn aabb(&self) -> Aabb<P::Scalar> {
-        self.tree.aabb()
+        self.layout.aabb()
     }
 
     /// The primitive with an input index, a skipped one too; none if the index is too large.
     #[inline]
     pub fn get(&self, index: usize) -> Option<&P> {
-        self.primitives.get(*self.slots.get(index)? as usize)
+        self.primitives.get(index)
     }
 
     /// The primitive that was hit.
@@ -105,36 +96,41 @@ impl<P: Primitive> Bvh<P> {
     /// If `index` is not below the number of primitives in the input: see [`get`](Self::get).
     #[inline]
     pub fn primitive(&self, index: usize) -> &P {
-        &self.primitives[self.slots[index] as usize]
+        &self.primitives[index]
     }
 
     /// The primitives in the order of the input, skipped ones included.
-    pub fn primitives(&self) -> impl ExactSizeIterator<Item = &P> {
-        self.slots.iter().map(|&slot| &self.primitives[slot as usize])
+    pub fn primitives(&self) -> &[P] {
+        &self.primitives
     }
 
     /// The input indices of the primitives that were skipped as invalid, ascending: see
     /// [`OnInvalid::Skip`](crate::OnInvalid::Skip).
     pub fn skipped(&self) -> &[u32] {
-        &self.tree.indices[self.tree.len()..]
+        &self.skipped
     }
 
-    /// The tree, to be compared with another.
-    pub fn tree(&self) -> &Tree<P::Scalar> {
-        &self.tree
+    /// The hierarchy without its primitives, to be compared with another.
+    pub fn layout(&self) -> &L {
+        &self.layout
     }
 
-    /// The tree's shape and estimated cost.
+    /// What queries are computed with.
+    pub fn instruction_set(&self) -> InstructionSet {
+        self.backend.instruction_set()
+    }
+
+    /// The hierarchy's shape and estimated cost.
     pub fn report(&self) -> TreeReport {
-        self.tree.report()
+        TreeReport::new(&self.layout)
     }
 
-    /// Bytes of everything: nodes, indices, and the primitives themselves (without what they may
-    /// own elsewhere).
+    /// Bytes of everything: nodes, leaves, indices, and the primitives themselves (without what they may
+    /// own or refer to elsewhere).
     pub fn memory_bytes(&self) -> usize {
-        self.report().memory_bytes
-            + size_of::<P>() * self.primitives.len()
-            + size_of::<u32>() * self.slots.len()
+        self.layout.bytes()
+            + size_of::<P>() * self.primitives.capacity()
+            + size_of::<u32>() * self.skipped.capacity()
     }
 
     /// Checks every invariant that queries rely on, in O(n): for tests and for the wary.
@@ -143,23 +139,25 @@ impl<P: Primitive> Bvh<P> {
     /// The first invariant found broken. Never for a tree as built, unless a primitive's box
     /// has changed since.
     pub fn check(&self) -> Result<(), InvariantError> {
-        self.tree.check(|slot| self.primitives[slot].aabb())
+        let is_skipped = |index: usize| self.skipped.binary_search(&(index as u32)).is_ok();
+        let indices = (0..self.primitives.len()).filter(|&index| !is_skipped(index));
+        check(&self.layout, indices, |index| self.primitives[index].aabb())
     }
 }
 
-impl<P: Primitive> fmt::Debug for Bvh<P> {
+impl<P: Primitive, L: Layout<P>> fmt::Debug for Bvh<P, L> {
     /// The tree's report; nothing is asked of the primitives.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Bvh").field("report", &self.report()).finish_non_exhaustive()
     }
 }
 
-impl<P: Intersect> Bvh<P> {
+impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
     /// The hit with the smallest t in the ray's interval; of several with equal t, that of the
     /// primitive with the lowest index. None for an invalid ray: see [`Ray::validate`].
     #[inline]
     pub fn closest_hit(&self, ray: &Ray<P::Scalar>) -> Option<Hit<P::Scalar, P::Payload>> {
-        closest_hit(self.scene(), ray, &mut ())
+        self.closest_hit_with(ray, &mut ())
     }
 
     /// As [`closest_hit`](Self::closest_hit), telling `recorder` of each step:
@@ -170,27 +168,53 @@ impl<P: Intersect> Bvh<P> {
         ray: &Ray<P::Scalar>,
         recorder: &mut impl Recorder,
     ) -> Option<Hit<P::Scalar, P::Payload>> {
-        closest_hit(self.scene(), ray, recorder)
+        let Self { layout, primitives, .. } = self;
+        self.backend.run(Ask { layout, primitives, ray, recorder, question: PhantomData::<Closest<'_, P>> })
     }
 
     /// Whether anything is hit in the ray's interval: the same as `closest_hit(ray).is_some()`,
     /// but content with any hit.
     #[inline]
     pub fn any_hit(&self, ray: &Ray<P::Scalar>) -> bool {
-        any_hit(self.scene(), ray, &mut ())
+        self.any_hit_with(ray, &mut ())
     }
 
     /// As [`any_hit`](Self::any_hit), telling `recorder` of each step.
     #[inline]
     pub fn any_hit_with(&self, ray: &Ray<P::Scalar>, recorder: &mut impl Recorder) -> bool {
-        any_hit(self.scene(), ray, recorder)
+        let Self { layout, primitives, .. } = self;
+        self.backend.run(Ask { layout, primitives, ray, recorder, question: PhantomData::<Any<'_, P>> })
+    }
+
+    /// [`closest_hit`](Self::closest_hit) of each ray, the same bits, in the place of the same number. If there are more
+    /// rays than places or more places than rays, the others are left alone.
+    ///
+    /// Several rays are traced in turns, so that one goes on while others wait for memory: see the README for what it gains.
+    ///
+    /// ```
+    /// use bvhkit::{Bvh, Ray, Sphere};
+    /// let bvh = Bvh::build((0..100).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)))?;
+    /// let rays: Vec<Ray> = (0..50).map(|i| Ray::new([2.0 * i as f32, -1.0, 0.0], [0.0, 1.0, 0.0])).collect();
+    /// let mut hits = vec![None; rays.len()];
+    /// bvh.closest_hits(&rays, &mut hits);
+    /// assert!((0..50).all(|i| hits[i].is_some_and(|hit| hit.index == 2 * i)));
+    /// # Ok::<(), bvhkit::BuildError>(())
+    /// ```
+    pub fn closest_hits(&self, rays: &[Ray<P::Scalar>], hits: &mut [Option<Hit<P::Scalar, P::Payload>>]) {
+        ask_all::<P, L, Closest<'_, P>>(&self.layout, self.backend, &self.primitives, rays, hits);
+    }
+
+    /// [`any_hit`](Self::any_hit) of each ray, in the place of the same number; as
+    /// [`closest_hits`](Self::closest_hits).
+    pub fn any_hits(&self, rays: &[Ray<P::Scalar>], hits: &mut [bool]) {
+        ask_all::<P, L, Any<'_, P>>(&self.layout, self.backend, &self.primitives, rays, hits);
     }
 
     /// All hits in the ray's interval by increasing t, those with equal t by index: one for each
     /// primitive hit, its first. Lazy: only as much of the tree is visited as it takes to be sure
     /// of the hits asked for.
-    pub fn hits(&self, ray: &Ray<P::Scalar>) -> Hits<'_, P> {
-        Hits::new(self.scene(), ray, ())
+    pub fn hits(&self, ray: &Ray<P::Scalar>) -> Hits<'_, P, L> {
+        Hits::new(&self.layout, &self.primitives, ray, ())
     }
 
     /// As [`hits`](Self::hits), telling `recorder` of each step.
@@ -198,12 +222,7 @@ impl<P: Intersect> Bvh<P> {
         &'a self,
         ray: &Ray<P::Scalar>,
         recorder: &'a mut R,
-    ) -> Hits<'a, P, &'a mut R> {
-        Hits::new(self.scene(), ray, recorder)
-    }
-
-    #[inline(always)]
-    fn scene(&self) -> Scene<'_, P> {
-        Scene { tree: &self.tree, primitives: &self.primitives }
+    ) -> Hits<'a, P, L, &'a mut R> {
+        Hits::new(&self.layout, &self.primitives, ray, recorder)
     }
 }

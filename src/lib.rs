@@ -68,6 +68,7 @@ mod build;
 mod builder;
 mod bvh;
 mod geometry;
+mod layout;
 mod primitive;
 mod query;
 pub mod reference;
@@ -84,9 +85,12 @@ pub use build::{Flaw, PrimRef, ThreadPoolError};
 pub use builder::{BuildError, Builder, OnInvalid, Quality};
 pub use bvh::Bvh;
 pub use geometry::{Aabb, Axis, PreparedRay, Ray, RayError, Scalar};
+pub use layout::{Layout, WideTree};
 pub use primitive::{
-    Barycentrics, Corners, Fast, Intersect, MeshError, MeshTriangle, Precise, Primitive, Sphere,
-    SurfacePoint, Triangle, TriangleMesh, Watertight,
+    Barycentrics, Corners, Fast, FastLeaf, Intersect, LEAF_WIDTH, Leaf, MeshError, MeshTriangle, OneByOne,
+    Operands, Precise, PreciseLeaf, Primitive, Sphere, SphereLeaf, SurfacePoint, Triangle, TriangleMesh,
+    Watertight, WatertightLeaf,
 };
-pub use query::{Counters, Hit, Hits, Recorder};
+pub use query::{Counters, Hit, Hits, Recorder, Traverse};
+pub use simd::{InstructionSet, Lanes};
 pub use tree::{InvariantError, LeafSizes, MAX_DEPTH, Tree, TreeReport};

@@ -1,9 +1,13 @@
 //! The public face as a user meets it: what compiles, what is lazy, what the counters mean.
 
+#[path = "common/alone.rs"]
+mod alone;
+
+use alone::Alone;
 use bvhkit::heuristic::{BinnedSah, Heuristic, Median, SweepSah};
 use bvhkit::{
-    Aabb, Barycentrics, Builder, Bvh, Counters, Hits, Intersect, Primitive, Quality, Ray, Recorder, Sphere,
-    Triangle, TriangleMesh,
+    Aabb, Barycentrics, BuildError, Builder, Bvh, Counters, Hits, InstructionSet, Intersect, OneByOne,
+    PreparedRay, Primitive, Quality, Ray, Recorder, Sphere, Traverse, Tree, Triangle, TriangleMesh, WideTree,
 };
 use glam::{DVec3, Vec3};
 
@@ -50,31 +54,32 @@ fn input_is_anything_that_iterates() {
 
 #[test]
 fn unlike_primitives_behind_one_pointer() {
-    type Surface = dyn Intersect<Scalar = f32, Payload = ()> + Send + Sync;
+    type Surface = dyn Intersect<Scalar = f32, Payload = (), Leaf = OneByOne> + Send + Sync;
     let scene: Vec<Box<Surface>> =
-        vec![Box::new(Aabb::new([1.0f32, -1.0, -1.0], [2.0, 1.0, 1.0])), Box::new(row(1)[0])];
+        vec![Box::new(Aabb::new([1.0f32, -1.0, -1.0], [2.0, 1.0, 1.0])), Box::new(Alone(row(1)[0]))];
     let bvh = Bvh::build(scene).unwrap();
     assert!(bvh.hits(&along_the_row()).map(|hit| hit.index).eq([1, 0]));
-    let borrowed = Bvh::build(bvh.primitives().map(|primitive| &**primitive)).unwrap();
+    let borrowed = Bvh::build(bvh.primitives().iter().map(|primitive| &**primitive)).unwrap();
     assert!(borrowed.hits(&along_the_row()).map(|hit| hit.index).eq([1, 0]));
 }
 
 #[test]
 fn a_heuristic_chosen_at_run_time() {
     let trees = [&Median as &dyn Heuristic<f32>, &BinnedSah::default(), &SweepSah::default(), &Quality::High]
-        .map(|heuristic| Bvh::builder().heuristic(heuristic).build(row(100)).unwrap());
+        .map(|heuristic| Bvh::builder().layout::<Tree>().heuristic(heuristic).build(row(100)).unwrap());
     assert!(trees.iter().all(|bvh| bvh.any_hit(&along_the_row())));
-    assert!(trees[0].tree() != trees[2].tree(), "the choice makes a difference");
-    let direct = Bvh::builder().heuristic(Median).build(row(100)).unwrap();
-    assert!(trees[0].tree() == direct.tree(), "and how it is passed does not");
+    assert!(trees[0].layout() != trees[2].layout(), "the choice makes a difference");
+    let direct = Bvh::builder().heuristic(Median).layout::<Tree>().build(row(100)).unwrap();
+    assert!(trees[0].layout() == direct.layout(), "and how it is passed does not");
 }
 
 #[test]
 fn the_last_choice_of_a_heuristic_counts() {
-    let high = Bvh::builder().quality(Quality::High).build(row(100)).unwrap();
-    let by_name = Bvh::builder().heuristic(Median).heuristic(Quality::High).build(row(100)).unwrap();
-    let median = Bvh::builder().quality(Quality::High).heuristic(Median).build(row(100)).unwrap();
-    assert!(high.tree() == by_name.tree() && high.tree() != median.tree());
+    let builder = || Bvh::builder().layout::<Tree>();
+    let high = builder().quality(Quality::High).build(row(100)).unwrap();
+    let by_name = builder().heuristic(Median).heuristic(Quality::High).build(row(100)).unwrap();
+    let median = builder().quality(Quality::High).heuristic(Median).build(row(100)).unwrap();
+    assert!(high.layout() == by_name.layout() && high.layout() != median.layout());
 }
 
 #[test]
@@ -82,8 +87,10 @@ fn trees_and_what_comes_of_them_cross_threads() {
     fn crosses<T: Send + Sync>() {}
     crosses::<Bvh<Triangle>>();
     crosses::<Bvh<&Sphere<f64>>>();
+    crosses::<Bvh<Triangle, Tree>>();
     crosses::<Builder<Triangle>>();
-    crosses::<Hits<'_, Triangle>>();
+    crosses::<Hits<'_, Triangle, WideTree>>();
+    crosses::<Hits<'_, Triangle, Tree>>();
 
     let bvh = Bvh::build(row(100)).unwrap();
     let answers = std::thread::scope(|scope| {
@@ -106,12 +113,20 @@ impl Primitive for Named {
     }
 }
 
+impl Intersect for Named {
+    type Payload = ();
+    type Leaf = OneByOne;
+    fn intersect(&self, _: &PreparedRay) -> Option<(f32, ())> {
+        None
+    }
+}
+
 #[test]
 fn primitives_come_back_in_the_order_of_the_input() {
     let named = |i: usize| Named { name: i.to_string(), place: [(i * 37 % 101) as f32, 0.0, 0.0] };
-    // No rays: a box is all it takes to be in a tree.
     let bvh = Bvh::builder().max_leaf_size(1).build((0..101).map(named)).unwrap();
-    assert!(bvh.primitives().map(|primitive| primitive.name.clone()).eq((0..101).map(|i| i.to_string())));
+    let names = bvh.primitives().iter().map(|primitive| primitive.name.clone());
+    assert!(names.eq((0..101).map(|i| i.to_string())));
     assert_eq!(bvh.primitives().len(), 101);
     for i in 0..101 {
         assert_eq!(bvh.primitive(i).name, i.to_string());
@@ -128,16 +143,17 @@ fn a_payload_tells_where_on_the_triangle() {
     assert_eq!(hit.payload, Barycentrics { u: 0.25, v: 0.25 });
 }
 
-#[test]
-fn hits_are_found_as_they_are_asked_for() {
-    let bvh = Bvh::builder().max_leaf_size(1).build(row(1000)).unwrap();
+fn finds_hits_as_they_are_asked_for<L: Traverse<Sphere>>(bvh: &Bvh<Sphere, L>) {
     let (mut first, mut all, mut closest) = (Counters::default(), Counters::default(), Counters::default());
     assert_eq!(bvh.hits_with(&along_the_row(), &mut first).next().unwrap().index, 0);
     assert_eq!(bvh.hits_with(&along_the_row(), &mut all).count(), 1000);
     bvh.closest_hit_with(&along_the_row(), &mut closest);
-    assert_eq!((all.primitives, all.leaves, all.nodes), (1000, 1000, 999));
-    assert!(first.nodes < 20 && first.primitives < 4, "{first:?}");
-    assert!(closest.nodes < 20 && closest.primitives < 4, "{closest:?}");
+    let report = bvh.report();
+    let [leaves, nodes] = [report.leaves, report.inner_nodes].map(|count| count as u64);
+    assert_eq!((all.primitives, all.leaves, all.nodes), (1000, leaves, nodes));
+    let few = 4 * report.leaf_sizes.max as u64;
+    assert!(first.nodes < 20 && first.primitives < few, "{first:?}");
+    assert!(closest.nodes < 20 && closest.primitives < few, "{closest:?}");
 
     let mut hits = bvh.hits(&along_the_row());
     assert_eq!(hits.by_ref().count(), 1000);
@@ -145,8 +161,15 @@ fn hits_are_found_as_they_are_asked_for() {
 }
 
 #[test]
+fn hits_are_found_as_they_are_asked_for() {
+    let builder = || Bvh::builder().max_leaf_size(1);
+    finds_hits_as_they_are_asked_for(&builder().build(row(1000)).unwrap());
+    finds_hits_as_they_are_asked_for(&builder().layout::<Tree>().build(row(1000)).unwrap());
+}
+
+#[test]
 fn counters_count_rays_nodes_leaves_and_primitives() {
-    let bvh = Bvh::builder().heuristic(Median).max_leaf_size(2).build(row(4)).unwrap();
+    let bvh = Bvh::builder().layout::<Tree>().heuristic(Median).max_leaf_size(2).build(row(4)).unwrap();
     let mut counters = Counters::default();
     // Into the first of two leaves; the second begins behind the hit.
     bvh.closest_hit_with(&along_the_row(), &mut counters);
@@ -164,7 +187,7 @@ fn counters_count_rays_nodes_leaves_and_primitives() {
 
 #[test]
 fn what_lies_outside_the_interval_is_not_visited() {
-    let bvh = Bvh::builder().max_leaf_size(1).build(row(1000)).unwrap();
+    let bvh = Bvh::builder().layout::<Tree>().max_leaf_size(1).build(row(1000)).unwrap();
     // From the gap between two spheres into that gap: half of the row behind, half of it beyond.
     let ray = Ray::new([500.5, 0.0, 0.0], [1.0, 0.0, 0.0]).with_interval(0.0, 0.05);
     let mut counters = Counters::default();
@@ -184,7 +207,20 @@ fn a_recorder_of_ones_own() {
         }
     }
     let mut leaves = Leaves::default();
-    let bvh = Bvh::builder().max_leaf_size(1).build(row(8)).unwrap();
+    let bvh = Bvh::builder().layout::<Tree>().max_leaf_size(1).build(row(8)).unwrap();
     bvh.hits_with(&along_the_row(), &mut leaves).for_each(drop);
     assert_eq!(leaves.0, 8);
+}
+
+#[test]
+fn an_instruction_set_is_what_was_asked_for_or_an_error() {
+    let available: Vec<_> = InstructionSet::available().collect();
+    assert_eq!(available.last(), Some(&InstructionSet::best()));
+    assert_eq!(Bvh::build(row(9)).unwrap().instruction_set(), InstructionSet::best());
+    for set in InstructionSet::ALL {
+        let built = Bvh::builder().instruction_set(set).build(row(9)).map(|bvh| bvh.instruction_set());
+        let expected =
+            if available.contains(&set) { Ok(set) } else { Err(BuildError::NoInstructionSet(set)) };
+        assert_eq!(built, expected);
+    }
 }

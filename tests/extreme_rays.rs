@@ -8,6 +8,7 @@ mod common {
     pub mod hostile;
     pub mod in_every_mode;
     pub mod modes;
+    pub mod naive;
 }
 
 use bvhkit::{Aabb, Bvh, Counters, Ray, RayError, Scalar, Sphere, Triangle};

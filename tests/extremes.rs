@@ -26,6 +26,7 @@ mod common {
     pub mod hostile;
     pub mod in_every_mode;
     pub mod modes;
+    pub mod naive;
     pub mod range;
 }
 

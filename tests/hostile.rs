@@ -9,8 +9,8 @@ mod common {
 
 use bvhkit::heuristic::{BinnedSah, BuildNode, Heuristic, Median, Midpoint, Split, SweepSah};
 use bvhkit::{
-    Aabb, Axis, BuildError, Bvh, Intersect, MAX_DEPTH, PreparedRay, Primitive, Quality, Ray, Scalar, Sphere,
-    Triangle, reference,
+    Aabb, Axis, BuildError, Bvh, Intersect, MAX_DEPTH, OneByOne, PreparedRay, Primitive, Quality, Ray,
+    Scalar, Sphere, Traverse, Tree, Triangle, reference,
 };
 use common::heuristics;
 use common::in_every_mode::in_every_mode;
@@ -51,6 +51,7 @@ impl Primitive for Asked<'_> {
 
 impl Intersect for Asked<'_> {
     type Payload = ();
+    type Leaf = OneByOne;
     fn intersect(&self, ray: &PreparedRay) -> Option<(f32, ())> {
         self.0.intersect(ray)
     }
@@ -148,13 +149,17 @@ fn row<S: Scalar>(n: usize) -> (Vec<Sphere<S>>, Ray<S>) {
 }
 
 fn build_and_ask<S: Scalar>(n: usize, name: &str, heuristic: &dyn Heuristic<S>) {
+    fn ask<'a, S: Scalar, L: Traverse<&'a Sphere<S>>>(bvh: &Bvh<&'a Sphere<S>, L>, ray: &Ray<S>, name: &str) {
+        bvh.check().unwrap();
+        assert!(bvh.report().max_depth <= MAX_DEPTH, "{name}");
+        assert_eq!(bvh.closest_hit(ray).unwrap().index, 0, "{name}");
+        assert!(bvh.any_hit(ray), "{name}");
+        assert_eq!(bvh.hits(ray).count(), bvh.len(), "{name}");
+    }
     let (spheres, ray) = row::<S>(n);
-    let bvh = Bvh::builder().heuristic(heuristic).max_leaf_size(1).build(&spheres).unwrap();
-    bvh.check().unwrap();
-    assert!(bvh.report().max_depth <= MAX_DEPTH, "{name}");
-    assert_eq!(bvh.closest_hit(&ray).unwrap().index, 0, "{name}");
-    assert!(bvh.any_hit(&ray), "{name}");
-    assert_eq!(bvh.hits(&ray).count(), n, "{name}");
+    let builder = Bvh::builder().heuristic(heuristic).max_leaf_size(1);
+    ask(&builder.clone().build(&spheres).unwrap(), &ray, name);
+    ask(&builder.layout::<Tree<S>>().build(&spheres).unwrap(), &ray, name);
 }
 
 #[test]
@@ -178,7 +183,8 @@ fn hostile_heuristics_over_many_tasks() {
 #[test]
 fn a_bad_split_is_replaced_by_halves_and_a_poor_one_is_taken() {
     for (name, stubborn) in STUBBORN {
-        let bvh = Bvh::builder().heuristic(stubborn).max_leaf_size(1).build(row(1024).0).unwrap();
+        let builder = Bvh::builder().layout::<Tree>().heuristic(stubborn).max_leaf_size(1);
+        let bvh = builder.build(row(1024).0).unwrap();
         let expected = if name.starts_with('1') || name.starts_with("n - 1") { MAX_DEPTH } else { 10 };
         assert_eq!(bvh.report().max_depth, expected, "{name}");
     }
@@ -189,7 +195,8 @@ fn a_leaf_size_of_zero_is_an_error_and_a_huge_one_a_single_leaf() {
     let zero = Bvh::builder().max_leaf_size(0).build([Sphere::new([0.0f32; 3], 1.0)]);
     assert_eq!(zero.unwrap_err(), BuildError::ZeroLeafSize);
     for size in [10_000, usize::MAX] {
-        let bvh = Bvh::builder().heuristic(Median).max_leaf_size(size).build(row::<f32>(10_000).0).unwrap();
+        let builder = Bvh::builder().layout::<Tree>().heuristic(Median).max_leaf_size(size);
+        let bvh = builder.build(row(10_000).0).unwrap();
         assert_eq!((bvh.report().leaves, bvh.report().max_depth), (1, 0));
         assert_eq!(bvh.hits(&row(10_000).1).count(), 10_000);
     }
@@ -203,6 +210,14 @@ impl Primitive for Nothing {
     type Scalar = f32;
     fn aabb(&self) -> Aabb {
         panic!("no box is asked for before the number is known")
+    }
+}
+
+impl Intersect for Nothing {
+    type Payload = ();
+    type Leaf = OneByOne;
+    fn intersect(&self, _: &PreparedRay) -> Option<(f32, ())> {
+        None
     }
 }
 
@@ -253,6 +268,7 @@ fn an_intersection_that_answers_nonsense_is_no_hit() {
     }
     impl Intersect for Liar {
         type Payload = ();
+        type Leaf = OneByOne;
         fn intersect(&self, _: &PreparedRay) -> Option<(f32, ())> {
             Some((self.0, ()))
         }

@@ -8,10 +8,12 @@ mod common {
     pub mod hostile;
     pub mod in_every_mode;
     pub mod modes;
+    pub mod naive;
 }
 
 use bvhkit::{
-    Aabb, BuildError, Bvh, Flaw, Intersect, OnInvalid, PreparedRay, Primitive, Ray, Scalar, Sphere, Triangle,
+    Aabb, BuildError, Bvh, Flaw, Intersect, OnInvalid, OneByOne, PreparedRay, Primitive, Ray, Scalar, Sphere,
+    Triangle,
 };
 use common::agreement::assert_agreement;
 use common::aimed::{aimed, soup, triangles};
@@ -118,6 +120,7 @@ impl Primitive for Sorted {
 
 impl Intersect for Sorted {
     type Payload = ();
+    type Leaf = OneByOne;
     fn intersect(&self, ray: &PreparedRay) -> Option<(f32, ())> {
         self.0.intersect(ray)
     }

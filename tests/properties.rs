@@ -5,9 +5,11 @@
 mod common {
     pub mod agreement;
     pub mod answers;
+    pub mod at_hits;
     pub mod heuristics;
     pub mod hostile;
     pub mod modes;
+    pub mod naive;
 }
 mod generate {
     pub mod numbers;
@@ -16,9 +18,12 @@ mod generate {
     pub mod scenes;
 }
 
-use bvhkit::{Fast, Intersect, Precise, Ray, Scalar, Triangle, TriangleMesh, Watertight, reference};
+use bvhkit::{
+    Barycentrics, Fast, Intersect, Precise, Scalar, Triangle, TriangleMesh, Watertight, WatertightLeaf,
+};
 use common::agreement::assert_agreement;
 use common::answers::Payload;
+use common::at_hits::at_hits;
 use common::modes::Mode;
 use generate::primitives::{Corners, boxes, discs, spheres, triangles};
 use generate::rays::{Aim, aims};
@@ -27,29 +32,13 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
-/// The rays as aimed, and again with intervals that begin, end, or begin and end at their hits.
-fn rays<S: Scalar, P: Intersect<Scalar = S>>(
-    soup: &[Corners<S>],
-    aims: &[Aim],
-    primitives: &[P],
-) -> Vec<Ray<S>> {
-    let mut rays: Vec<_> = aims.iter().map(|aim| aim.ray(soup)).collect();
-    for i in 0..rays.len() {
-        let ray = rays[i];
-        if let Some(hit) = reference::closest_hit(primitives, &ray) {
-            let intervals = [(hit.t, hit.t), (ray.t_min, hit.t), (hit.t, ray.t_max)];
-            rays.extend(intervals.map(|(t_min, t_max)| ray.with_interval(t_min, t_max)));
-        }
-    }
-    rays
-}
-
 fn check<S: Scalar, P: Intersect<Scalar = S, Payload: Payload>>(
     soup: &[Corners<S>],
     aims: &[Aim],
     primitives: &[P],
 ) -> usize {
-    assert_agreement(primitives, &rays(soup, aims, primitives))
+    let rays = aims.iter().map(|aim| aim.ray(soup)).collect();
+    assert_agreement(primitives, &at_hits(primitives, rays))
 }
 
 /// Triangles in a mode.
@@ -66,7 +55,7 @@ fn check_mesh<S: Scalar>(soup: &[Corners<S>], aims: &[Aim]) -> usize {
 
 /// Through two pointers, as a scene of unlike primitives would be.
 fn check_boxed<S: Scalar>(soup: &[Corners<S>], aims: &[Aim]) -> usize {
-    type Dyn<'a, S> = dyn Intersect<Scalar = S, Payload = bvhkit::Barycentrics<S>> + 'a;
+    type Dyn<'a, S> = dyn Intersect<Scalar = S, Payload = Barycentrics<S>, Leaf = WatertightLeaf> + 'a;
     let owned = triangles(soup);
     let boxed: Vec<Box<Dyn<'_, S>>> =
         owned.iter().map(|triangle: &Triangle<S>| Box::new(triangle) as Box<Dyn<'_, S>>).collect();

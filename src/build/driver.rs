@@ -92,10 +92,9 @@ pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
     heuristic: &H,
     max_leaf_size: usize,
 ) -> Tree<S> {
-    let len = references.len();
-    if len == 0 {
+    if references.is_empty() {
         let aabb = Extent::EMPTY.aabb;
-        return Tree { nodes: Vec::new(), root: Child::default(), aabb, indices: Vec::new(), len };
+        return Tree { nodes: Vec::new(), root: Child::default(), aabb, indices: Vec::new() };
     }
     let rules = Rules { heuristic, max_leaf_size };
     let extent = Extent::of(references);
@@ -107,7 +106,7 @@ pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
         join(&mut tree, parent, subtree);
     }
     let indices = references.iter().map(|reference| reference.index).collect();
-    Tree { nodes: tree.nodes, root: tree.root, aabb: extent.aabb, indices, len }
+    Tree { nodes: tree.nodes, root: tree.root, aabb: extent.aabb, indices }
 }
 
 /// Divides all sets of more than [`TASK_SIZE`] references, and returns the others as tasks.

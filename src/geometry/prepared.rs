@@ -22,13 +22,14 @@ pub struct PreparedRay<S: Scalar = f32> {
 impl<S: Scalar> PreparedRay<S> {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray<S>) -> Self {
+        Self::of_parts(ray, Slabs::new(ray), Shear::new(&ray.origin, &ray.direction))
+    }
+
+    /// The rest, for one whose parts are at hand.
+    #[inline(always)]
+    pub(crate) fn of_parts(ray: &Ray<S>, slabs: Slabs<S>, shear: Shear<S>) -> Self {
         let widen = |point: [S; 3]| point.map(S::widen);
-        Self {
-            ray: *ray,
-            slabs: Slabs::new(ray),
-            shear: Shear::new(ray.origin, ray.direction),
-            wide_shear: Shear::new(widen(ray.origin), widen(ray.direction)),
-        }
+        Self { ray: *ray, slabs, shear, wide_shear: Shear::new(&widen(ray.origin), &widen(ray.direction)) }
     }
 }
 

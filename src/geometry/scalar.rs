@@ -1,7 +1,9 @@
 //! The two scalars, `f32` and `f64`, behind one sealed trait.
 
+use crate::simd::{Lanes, Pair};
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+use fearless_simd::{Simd, f32x4, f32x8, f32x16, f64x4, f64x8};
 use glam::Vec3Swizzles;
 
 /// A coordinate: `f32` or `f64`. Sealed; a bound to write generic code with.
@@ -56,6 +58,13 @@ pub trait Scalar:
     /// Four of them side by side, for the slab test of two boxes.
     #[doc(hidden)]
     type Lanes4: crate::simd::Lanes4<Self>;
+    /// Lanes of an instruction set.
+    #[doc(hidden)]
+    type Times4<I: Simd>: Lanes<Self, Isa = I>;
+    #[doc(hidden)]
+    type Times8<I: Simd>: Lanes<Self, Isa = I>;
+    #[doc(hidden)]
+    type Times16<I: Simd>: Lanes<Self, Isa = I>;
     /// The scalar in which products and differences of this one's lose little or nothing: `f64`.
     #[doc(hidden)]
     type Wide: Scalar;
@@ -69,9 +78,13 @@ pub trait Scalar:
     /// `self * other`, rounded, and what the rounding left out, exactly but for underflow.
     #[doc(hidden)]
     fn exact_product(self, other: Self) -> [Self; 2];
-    /// The largest power of two that is no larger in size, if it is a normal number; else 1.
+    /// A power of two with which the product is in [1, 2] in size, if it is a normal number; a finite one above zero
+    /// for any.
     #[doc(hidden)]
-    fn power_of_two(self) -> Self;
+    fn inverse_power_of_two(self) -> Self;
+    /// One of two, without a branch.
+    #[doc(hidden)]
+    fn select(first: bool, if_first: Self, otherwise: Self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
     /// Finite and at least the smallest number of full precision in size.
@@ -127,7 +140,7 @@ mod sealed {
 }
 
 macro_rules! scalar {
-    ($scalar:ident, $vec3:ty, $lanes4:ty, $bits:ident, $signed:ident, $libm_sqrt:ident, $libm_fma:ident, $large_area:expr, $large_volume:expr) => {
+    ($scalar:ident, $vec3:ty, $lanes4:ty, [$times4:ty, $times8:ty, $times16:ty], $bits:ident, $signed:ident, $libm_sqrt:ident, $libm_fma:ident, $large_area:expr, $large_volume:expr) => {
         impl Scalar for $scalar {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -141,6 +154,9 @@ macro_rules! scalar {
             const LARGE_VOLUME: Self = $large_volume;
             type Vec3 = $vec3;
             type Lanes4 = $lanes4;
+            type Times4<I: Simd> = $times4;
+            type Times8<I: Simd> = $times8;
+            type Times16<I: Simd> = $times16;
             type Wide = f64;
 
             #[inline(always)]
@@ -165,9 +181,16 @@ macro_rules! scalar {
                 [product, libm::$libm_fma(self, other, -product)]
             }
             #[inline(always)]
-            fn power_of_two(self) -> Self {
-                let exponent = Self::INFINITY.to_bits();
-                if self.is_normal() { Self::from_bits(self.to_bits() & exponent) } else { 1.0 }
+            fn inverse_power_of_two(self) -> Self {
+                // 2^e has the bits of (e + bias) << digits: negated, twice the bias is left over.
+                let exponent = self.to_bits() & Self::INFINITY.to_bits();
+                let twice_the_bias = 2 * (1.0 as Self).to_bits();
+                Self::from_bits(twice_the_bias.wrapping_sub(exponent).max(Self::MIN_POSITIVE.to_bits()))
+            }
+            #[inline(always)]
+            fn select(first: bool, if_first: Self, otherwise: Self) -> Self {
+                let mask = ($bits::from(first)).wrapping_neg();
+                Self::from_bits((if_first.to_bits() & mask) | (otherwise.to_bits() & !mask))
             }
             #[inline(always)]
             fn is_finite(self) -> bool {
@@ -249,6 +272,7 @@ scalar!(
     f32,
     glam::Vec3A,
     glam::Vec4,
+    [f32x4<I>, f32x8<I>, f32x16<I>],
     u32,
     i32,
     sqrtf,
@@ -260,6 +284,7 @@ scalar!(
     f64,
     glam::DVec3,
     [f64; 4],
+    [f64x4<I>, f64x8<I>, Pair<f64x8<I>>],
     u64,
     i64,
     sqrt,

@@ -11,32 +11,37 @@ use super::{Scalar, Vector};
 /// small whole numbers, and in `f64` of most `f32`, nothing is rounded then, and an edge is met exactly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shear<S> {
-    origin: [S; 3],
+    /// On the axes below.
+    pub origin: [S; 3],
     /// Which axes of space become the first, the second and the third.
-    axes: [usize; 3],
+    pub axes: [usize; 3],
     /// The direction on these axes, scaled by a power of two to about 1, so that products with it
     /// neither overflow nor underflow.
-    direction: [S; 3],
+    pub direction: [S; 3],
     /// The direction on the third, unscaled.
-    forward: S,
+    pub forward: S,
 }
+
+/// The order of the axes that ends with each.
+const ORDERS: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 impl<S: Scalar> Shear<S> {
     #[inline(always)]
-    pub fn new(origin: [S; 3], direction: [S; 3]) -> Self {
-        let [x, y, z] = direction.map(S::abs);
+    pub fn new(origin: &[S; 3], direction: &[S; 3]) -> Self {
+        let [x, y, z] = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
+        // Without a branch: which axis it is cannot be foretold.
+        let (is_x, is_y) = ((x >= y) & (x >= z), y >= z);
         // The other two in either order: both sides of a triangle are hit.
-        let axes = if x >= y && x >= z {
-            [1, 2, 0]
-        } else if y >= z {
-            [2, 0, 1]
-        } else {
-            [0, 1, 2]
-        };
-        let direction = axes.map(|axis| direction[axis]);
-        let forward = direction[2];
-        let scale = (S::ONE / forward).power_of_two();
-        Self { origin, axes, direction: direction.map(|x| x * scale), forward }
+        let axes = ORDERS[usize::from(!is_x) * (2 - usize::from(is_y))];
+        let [i, j, k] = axes;
+        let forward = direction[k];
+        let scale = forward.inverse_power_of_two();
+        Self {
+            origin: [origin[i], origin[j], origin[k]],
+            axes,
+            direction: [direction[i] * scale, direction[j] * scale, forward * scale],
+            forward,
+        }
     }
 
     /// Three points in the ray's frame, one in each lane of the vectors: their first, second and third
@@ -46,11 +51,11 @@ impl<S: Scalar> Shear<S> {
     /// whatever the other two: triangles that share a corner agree about it.
     #[inline(always)]
     pub fn apply(&self, [a, b, c]: [[S; 3]; 3]) -> [S::Vec3; 3] {
-        let lanes = |axis: usize| {
-            let origin = self.origin[axis];
-            S::Vec3::from_array([a[axis], b[axis], c[axis]]) - S::Vec3::from_array([origin; 3])
+        let lanes = |k: usize| {
+            let axis = self.axes[k];
+            S::Vec3::from_array([a[axis], b[axis], c[axis]]) - S::Vec3::from_array([self.origin[k]; 3])
         };
-        let [x, y, z] = self.axes.map(lanes);
+        let (x, y, z) = (lanes(0), lanes(1), lanes(2));
         let [dx, dy, dz] = self.direction;
         [x * dz - z * dx, y * dz - z * dy, z]
     }

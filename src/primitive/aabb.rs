@@ -1,6 +1,6 @@
 //! The box as a primitive: its surface is what rays hit.
 
-use super::{Intersect, Primitive};
+use super::{Intersect, OneByOne, Primitive};
 use crate::geometry::{Aabb, PreparedRay, Scalar, max, min};
 
 impl<S: Scalar> Primitive for Aabb<S> {
@@ -14,6 +14,7 @@ impl<S: Scalar> Primitive for Aabb<S> {
 
 impl<S: Scalar> Intersect for Aabb<S> {
     type Payload = ();
+    type Leaf = OneByOne;
 
     /// A ray from inside hits the surface on the way out; a ray in the plane of a face hits its edge.
     #[inline(always)]

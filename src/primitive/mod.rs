@@ -1,14 +1,17 @@
 //! What a tree can hold: anything with bounds; and what a ray can hit.
 
 mod aabb;
+mod leaf;
 mod sphere;
 mod surface_point;
 mod triangle;
 
-pub use sphere::Sphere;
+pub use leaf::{Found, LEAF_WIDTH, Leaf, OneByOne, Operands};
+pub use sphere::{Sphere, SphereLeaf};
 pub use surface_point::SurfacePoint;
 pub use triangle::{
-    Barycentrics, Corners, Fast, MeshError, MeshTriangle, Precise, Triangle, TriangleMesh, Watertight,
+    Barycentrics, Corners, Fast, FastLeaf, MeshError, MeshTriangle, Precise, PreciseLeaf, Triangle,
+    TriangleMesh, Watertight, WatertightLeaf,
 };
 
 use crate::geometry::{Aabb, PreparedRay, Scalar};
@@ -56,7 +59,7 @@ pub trait Primitive {
 /// A primitive that rays can hit.
 ///
 /// ```
-/// use bvhkit::{Aabb, Bvh, Intersect, PreparedRay, Primitive, Ray};
+/// use bvhkit::{Aabb, Bvh, Intersect, OneByOne, PreparedRay, Primitive, Ray};
 ///
 /// /// A disc in the plane z = height.
 /// struct Disc { center: [f32; 2], height: f32, radius: f32 }
@@ -71,6 +74,7 @@ pub trait Primitive {
 ///
 /// impl Intersect for Disc {
 ///     type Payload = f32; // the distance from the disc's center
+///     type Leaf = OneByOne; // how discs lie in a leaf
 ///     fn intersect(&self, ray: &PreparedRay) -> Option<(f32, f32)> {
 ///         let t = (self.height - ray.origin[2]) / ray.direction[2];
 ///         let [x, y, _] = ray.at(t);
@@ -90,6 +94,10 @@ pub trait Intersect: Primitive {
     /// What a hit tells beside t: barycentrics, a normal, `()`.
     type Payload: Copy;
 
+    /// How primitives of this type lie in the leaves of the wide layouts: [`OneByOne`], unless there is a [`Leaf`] of
+    /// their own.
+    type Leaf: Leaf<Self::Scalar, Self::Payload>;
+
     /// The ray's first hit with this primitive at a t in [`ray.t_min`, `ray.t_max`], and its payload.
     ///
     /// Expected to be a pure function: equal primitives and rays give equal answers. A t outside
@@ -99,6 +107,9 @@ pub trait Intersect: Primitive {
     /// a few roundings of the interval's end may be on either side of it: to find a hit again, leave
     /// `t_min` a little below its t.
     fn intersect(&self, ray: &PreparedRay<Self::Scalar>) -> Option<(Self::Scalar, Self::Payload)>;
+
+    /// Writes the [`Leaf::OPERANDS`] scalars that lie in the leaf: none for [`OneByOne`].
+    fn put_operands(&self, _operands: &mut [Self::Scalar]) {}
 }
 
 macro_rules! forward {
@@ -121,9 +132,14 @@ macro_rules! forward {
 
         impl<P: Intersect + ?Sized> Intersect for $pointer {
             type Payload = P::Payload;
+            type Leaf = P::Leaf;
             #[inline(always)]
             fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, P::Payload)> {
                 (**self).intersect(ray)
+            }
+            #[inline(always)]
+            fn put_operands(&self, operands: &mut [P::Scalar]) {
+                (**self).put_operands(operands);
             }
         }
     };

@@ -1,11 +1,10 @@
 //! All hits along a ray, in order, found as they are asked for.
 
 use super::counters::Recorder;
-use super::traverse::enter_children;
-use super::{Hit, HitOf, Scene, accept};
+use super::{Hit, HitOf, accept};
 use crate::geometry::{PreparedRay, Ray, Scalar};
+use crate::layout::{Layout, Part};
 use crate::primitive::Intersect;
-use crate::tree::Child;
 use alloc::collections::BinaryHeap;
 use core::cmp::Ordering;
 
@@ -17,81 +16,79 @@ use core::cmp::Ordering;
 /// hits cost little more than the closest one.
 ///
 /// From [`Bvh::hits`](crate::Bvh::hits).
-pub struct Hits<'a, P: Intersect, R = ()> {
-    scene: Scene<'a, P>,
+pub struct Hits<'a, P: Intersect, L: Layout<P>, R = ()> {
+    layout: &'a L,
+    primitives: &'a [P],
     ray: PreparedRay<P::Scalar>,
-    queue: BinaryHeap<Event<P::Scalar, P::Payload>>,
+    queue: BinaryHeap<Event<P::Scalar, P::Payload, L::Place>>,
     recorder: R,
 }
 
 /// Something that lies ahead on the ray.
-struct Event<S, T> {
+struct Event<S, T, B> {
     t: S,
-    what: What<T>,
+    what: What<T, B>,
 }
 
-enum What<T> {
-    Box(Child),
+enum What<T, B> {
+    Box(B),
     Hit { index: u32, payload: T },
 }
 
-impl<'a, P: Intersect, R: Recorder> Hits<'a, P, R> {
-    pub(crate) fn new(scene: Scene<'a, P>, ray: &Ray<P::Scalar>, mut recorder: R) -> Self {
+impl<'a, P: Intersect, L: Layout<P>, R: Recorder> Hits<'a, P, L, R> {
+    pub(crate) fn new(layout: &'a L, primitives: &'a [P], ray: &Ray<P::Scalar>, mut recorder: R) -> Self {
         let mut queue = BinaryHeap::new();
         let ray = ray.prepare();
         if ray.is_valid() {
             recorder.ray();
-            if let Some(root) = scene.tree.root()
-                && let Some(t) = ray.slabs.entry(&scene.tree.aabb).filter(|&t| t <= ray.t_max)
+            if let Some(root) = layout.root()
+                && let Some(t) = ray.slabs.entry(&layout.aabb()).filter(|&t| t <= ray.t_max)
             {
                 queue.push(Event { t, what: What::Box(root) });
             }
         }
-        Self { scene, ray, queue, recorder }
+        Self { layout, primitives, ray, queue, recorder }
     }
 
     /// Puts what is in a box into the queue.
-    fn open(&mut self, child: Child) {
-        let limit = self.ray.t_max;
-        if child.is_leaf() {
-            self.recorder.leaf();
-            for slot in child.slots() {
-                self.recorder.primitive();
-                if let Some((t, payload)) = accept(&self.scene.primitives[slot], &self.ray, limit) {
-                    let index = self.scene.tree.indices[slot];
-                    self.queue.push(Event { t, what: What::Hit { index, payload } });
+    fn open(&mut self, place: L::Place) {
+        let Self { layout, primitives, ray, queue, recorder } = self;
+        let mut is_leaf = false;
+        layout.open(place, |part| match part {
+            Part::Child(aabb, place) => {
+                if let Some(t) = ray.slabs.entry(&aabb).filter(|&t| t <= ray.t_max) {
+                    queue.push(Event { t, what: What::Box(place) });
                 }
             }
-        } else {
-            self.recorder.node();
-            let node = &self.scene.tree.nodes[child.first as usize];
-            let (entries, met) = enter_children(node, &self.ray.slabs, limit);
-            for side in 0..2 {
-                if met[side] {
-                    self.queue.push(Event { t: entries[side], what: What::Box(node.children[side]) });
+            Part::Primitive(index) => {
+                is_leaf = true;
+                recorder.primitive();
+                if let Some((t, payload)) = accept(&primitives[index as usize], ray, ray.t_max) {
+                    queue.push(Event { t, what: What::Hit { index, payload } });
                 }
             }
-        }
+        });
+        if is_leaf { recorder.leaf() } else { recorder.node() }
     }
 }
 
-impl<P: Intersect, R: Recorder> Iterator for Hits<'_, P, R> {
+impl<P: Intersect, L: Layout<P>, R: Recorder> Iterator for Hits<'_, P, L, R> {
     type Item = HitOf<P>;
 
     fn next(&mut self) -> Option<HitOf<P>> {
         loop {
             let Event { t, what } = self.queue.pop()?;
             match what {
-                What::Box(child) => self.open(child),
+                What::Box(place) => self.open(place),
                 What::Hit { index, payload } => return Some(Hit { t, index: index as usize, payload }),
             }
         }
     }
 }
 
-impl<P: Intersect, R: Recorder> core::iter::FusedIterator for Hits<'_, P, R> {}
+impl<P: Intersect, L: Layout<P>, R: Recorder> core::iter::FusedIterator for Hits<'_, P, L, R> {}
 
-impl<S: Scalar, T> Ord for Event<S, T> {
+impl<S: Scalar, T, B> Ord for Event<S, T, B> {
     /// The heap's greatest is the first along the ray: a box before a hit at the same t, which may
     /// hold one with a lower index. No t is NaN, nor is a hit's -0; a box's entry may be, and no
     /// matter.
@@ -105,16 +102,16 @@ impl<S: Scalar, T> Ord for Event<S, T> {
     }
 }
 
-impl<S: Scalar, T> PartialOrd for Event<S, T> {
+impl<S: Scalar, T, B> PartialOrd for Event<S, T, B> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl<S: Scalar, T> PartialEq for Event<S, T> {
+impl<S: Scalar, T, B> PartialEq for Event<S, T, B> {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl<S: Scalar, T> Eq for Event<S, T> {}
+impl<S: Scalar, T, B> Eq for Event<S, T, B> {}

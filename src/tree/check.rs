@@ -1,35 +1,36 @@
-//! The invariants that queries rely on, checked one by one.
+//! The invariants that queries rely on, checked one by one, for any layout.
 
-use super::{MAX_DEPTH, Tree};
+use super::MAX_DEPTH;
 use crate::geometry::{Aabb, Scalar};
-use alloc::vec;
+use crate::layout::{Outline, Part};
 use alloc::vec::Vec;
 use core::fmt;
 
-/// The first invariant of a tree found broken. A tree that this crate built has none.
+/// The first invariant of a hierarchy found broken. One that this crate built has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum InvariantError {
-    /// A child refers to an inner node or to a slot that does not exist.
+    /// A node refers to a child that does not exist.
     DanglingChild {
-        /// What it refers to.
-        index: usize,
+        /// The depth at which the child should be.
+        depth: usize,
     },
-    /// A node is the child of two parents, or its own ancestor.
+    /// There are more ways to inner nodes than primitives: one is reached twice, or has no primitive below it.
     SharedNode {
-        /// The node.
-        node: usize,
+        /// The depth of the node that was one too many.
+        depth: usize,
     },
-    /// A node is nobody's child.
-    OrphanNode {
-        /// The node.
-        node: usize,
-    },
-    /// A slot is in no leaf, or in several.
-    SlotCoverage {
-        /// The slot.
-        slot: usize,
+    /// A primitive is in no leaf, or in several.
+    Coverage {
+        /// Its index in the input.
+        index: usize,
         /// In how many leaves it is.
         leaves: usize,
+    },
+    /// A leaf has an index that is not in the input, or was skipped.
+    UnknownPrimitive {
+        /// The index.
+        index: usize,
     },
     /// A leaf is deeper than [`MAX_DEPTH`].
     TooDeep {
@@ -38,31 +39,22 @@ pub enum InvariantError {
     },
     /// A box does not contain what is below it.
     LooseBox {
-        /// The inner node that stores the box; none for the box around the whole tree.
-        node: Option<usize>,
-    },
-    /// The indices are not each number below their count once.
-    NotAPermutation {
-        /// The first slot whose index is too large or was seen before.
-        slot: usize,
+        /// The depth of the node or leaf whose box it is; 0 is that around everything.
+        depth: usize,
     },
 }
 
 impl fmt::Display for InvariantError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::DanglingChild { index } => write!(f, "a child refers to {index}, which does not exist"),
-            Self::SharedNode { node } => write!(f, "node {node} has more than one parent"),
-            Self::OrphanNode { node } => write!(f, "node {node} has no parent"),
-            Self::SlotCoverage { slot, leaves } => write!(f, "slot {slot} is in {leaves} leaves, not in one"),
+            Self::DanglingChild { depth } => write!(f, "a child at depth {depth} does not exist"),
+            Self::SharedNode { depth } => write!(f, "a node at depth {depth} is reached twice, or is empty"),
+            Self::Coverage { index, leaves } => {
+                write!(f, "primitive {index} is in {leaves} leaves, not in one")
+            }
+            Self::UnknownPrimitive { index } => write!(f, "a leaf has the unknown primitive {index}"),
             Self::TooDeep { depth } => write!(f, "a leaf has depth {depth}, the bound is {MAX_DEPTH}"),
-            Self::LooseBox { node: Some(node) } => {
-                write!(f, "a box in node {node} does not contain what is below it")
-            }
-            Self::LooseBox { node: None } => f.write_str("the tree's box does not contain the tree"),
-            Self::NotAPermutation { slot } => {
-                write!(f, "the index in slot {slot} is out of range or occurs twice")
-            }
+            Self::LooseBox { depth } => write!(f, "a box at depth {depth} does not contain what is below it"),
         }?;
         f.write_str(": a primitive's box changed after the build, or differs from call to call")
     }
@@ -70,88 +62,93 @@ impl fmt::Display for InvariantError {
 
 impl core::error::Error for InvariantError {}
 
-impl<S: Scalar> Tree<S> {
-    /// Checks every invariant, with `aabb_of(slot)` the box of the primitive in a slot.
-    ///
-    /// Terminates for any content, in O(nodes + slots).
-    pub(crate) fn check(&self, aabb_of: impl Fn(usize) -> Aabb<S>) -> Result<(), InvariantError> {
-        self.check_indices()?;
-        let mut node_seen = vec![false; self.nodes.len()];
-        let mut slot_leaves = vec![0usize; self.len];
-        let mut open: Vec<_> = self.root().map(|root| (root, self.aabb, None, 0)).into_iter().collect();
-        while let Some((child, aabb, parent, depth)) = open.pop() {
-            if depth > MAX_DEPTH {
-                return Err(InvariantError::TooDeep { depth });
-            }
-            let below = if child.is_leaf() {
-                let slots = child.slots();
-                if slots.end > self.len {
-                    return Err(InvariantError::DanglingChild { index: slots.end - 1 });
-                }
-                slots.fold(Aabb::EMPTY, |below, slot| {
-                    slot_leaves[slot] += 1;
-                    below.union(aabb_of(slot))
-                })
-            } else {
-                let index = child.first as usize;
-                let Some(node) = self.nodes.get(index) else {
-                    return Err(InvariantError::DanglingChild { index });
-                };
-                if core::mem::replace(&mut node_seen[index], true) {
-                    return Err(InvariantError::SharedNode { node: index });
-                }
-                for side in [0, 1] {
-                    open.push((node.children[side], node.aabb(side), Some(index), depth + 1));
-                }
-                node.aabb(0).union(node.aabb(1))
-            };
-            if !aabb.contains(&below) {
-                return Err(InvariantError::LooseBox { node: parent });
-            }
+/// Checks every invariant of a hierarchy over the primitives with `indices`, whose boxes are `aabb_of(index)`.
+///
+/// Terminates for any content, in O(nodes + primitives).
+pub(crate) fn check<S: Scalar, H: Outline<S>>(
+    hierarchy: &H,
+    indices: impl Iterator<Item = usize>,
+    aabb_of: impl Fn(usize) -> Aabb<S>,
+) -> Result<(), InvariantError> {
+    let mut leaves_of: Vec<Option<u32>> = Vec::new();
+    for index in indices {
+        leaves_of.resize(leaves_of.len().max(index + 1), None);
+        leaves_of[index] = Some(0);
+    }
+    // A tree has fewer inner nodes than primitives: more must have been seen before.
+    let (mut budget, mut error) = (hierarchy.len(), None);
+    let mut open: Vec<_> = hierarchy.root().map(|root| (root, hierarchy.aabb(), 0)).into_iter().collect();
+    while let Some((place, aabb, depth)) = open.pop() {
+        if depth > MAX_DEPTH {
+            return Err(InvariantError::TooDeep { depth });
         }
-        if let Some(node) = node_seen.iter().position(|&seen| !seen) {
-            return Err(InvariantError::OrphanNode { node });
+        let (mut below, mut is_leaf) = (Aabb::EMPTY, false);
+        let exists = hierarchy.open(place, |part| match part {
+            Part::Child(aabb, place) => {
+                below = below.union(aabb);
+                open.push((place, aabb, depth + 1));
+            }
+            Part::Primitive(index) => {
+                is_leaf = true;
+                match leaves_of.get_mut(index as usize) {
+                    Some(Some(leaves)) => {
+                        *leaves += 1;
+                        below = below.union(aabb_of(index as usize));
+                    }
+                    _ => error = error.or(Some(InvariantError::UnknownPrimitive { index: index as usize })),
+                }
+            }
+        });
+        if !exists {
+            return Err(InvariantError::DanglingChild { depth });
         }
-        match slot_leaves.iter().position(|&leaves| leaves != 1) {
-            Some(slot) => Err(InvariantError::SlotCoverage { slot, leaves: slot_leaves[slot] }),
-            None => Ok(()),
+        if let Some(error) = error {
+            return Err(error);
+        }
+        if !is_leaf {
+            budget = budget.checked_sub(1).ok_or(InvariantError::SharedNode { depth })?;
+        }
+        if !aabb.contains(&below) {
+            return Err(InvariantError::LooseBox { depth });
         }
     }
-
-    fn check_indices(&self) -> Result<(), InvariantError> {
-        let mut seen = vec![false; self.indices.len()];
-        for (slot, &index) in self.indices.iter().enumerate() {
-            match seen.get_mut(index as usize) {
-                Some(seen) if !*seen => *seen = true,
-                _ => return Err(InvariantError::NotAPermutation { slot }),
-            }
+    match leaves_of.iter().position(|leaves| leaves.is_some_and(|leaves| leaves != 1)) {
+        Some(index) => {
+            Err(InvariantError::Coverage { index, leaves: leaves_of[index].unwrap_or_default() as usize })
         }
-        Ok(())
+        None => Ok(()),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tree::{Child, Node};
-    use crate::{Bvh, Sphere};
+    use crate::tree::{Child, Node, Tree};
+    use crate::{Bvh, Primitive, Sphere};
 
+    /// More than there are depths, so that a path can be too long without a node too many.
     fn spheres() -> Vec<Sphere> {
-        (0..20u8).map(|i| Sphere::new([f32::from(i), f32::from(i % 7), 0.0], 0.25)).collect()
+        (0..100u8).map(|i| Sphere::new([f32::from(i), f32::from(i % 7), 0.0], 0.25)).collect()
     }
 
     /// Builds a good tree, breaks it, and says what the check finds.
     fn broken(change: impl FnOnce(&mut Tree)) -> InvariantError {
         let spheres = spheres();
-        let bvh = Bvh::builder().max_leaf_size(2).build(&spheres).unwrap();
-        let mut tree = bvh.tree().clone();
-        let aabb_of = |slot: usize| {
-            use crate::Primitive;
-            spheres[bvh.tree().indices[slot] as usize].aabb()
-        };
-        assert_eq!(tree.check(aabb_of), Ok(()));
+        let bvh = Bvh::builder().layout::<Tree>().max_leaf_size(2).build(&spheres).unwrap();
+        let mut tree = bvh.layout().clone();
+        let found = |tree: &Tree| check(tree, 0..spheres.len(), |index| spheres[index].aabb());
+        assert_eq!(found(&tree), Ok(()));
         change(&mut tree);
-        tree.check(aabb_of).unwrap_err()
+        found(&tree).unwrap_err()
+    }
+
+    /// The same where no box can be too small for what is moved into it.
+    fn broken_inside(change: impl FnOnce(&mut Tree)) -> InvariantError {
+        broken(|tree| {
+            let everything = Node::new([tree.aabb; 2]).planes;
+            tree.nodes.iter_mut().for_each(|node| node.planes = everything);
+            change(tree);
+        })
     }
 
     fn leaf_of(tree: &mut Tree) -> &mut Child {
@@ -160,39 +157,56 @@ mod tests {
 
     #[test]
     fn each_broken_invariant_is_named() {
-        assert!(matches!(
-            broken(|t| t.nodes[0].planes[0][0][1] += 1.0),
-            InvariantError::LooseBox { node: Some(0) }
-        ));
-        assert_eq!(broken(|t| t.aabb.max[1] -= 1.0), InvariantError::LooseBox { node: None });
-        assert_eq!(broken(|t| t.indices[3] = t.indices[4]), InvariantError::NotAPermutation { slot: 4 });
-        assert_eq!(broken(|t| t.indices[3] = 99), InvariantError::NotAPermutation { slot: 3 });
-        assert!(matches!(broken(|t| leaf_of(t).first = 77), InvariantError::DanglingChild { .. }));
+        assert_eq!(broken(|t| t.nodes[0].planes[0][0][1] += 1.0), InvariantError::LooseBox { depth: 1 });
+        assert_eq!(broken(|t| t.aabb.max[1] -= 1.0), InvariantError::LooseBox { depth: 0 });
+        assert!(matches!(broken(|t| leaf_of(t).first = 777), InvariantError::DanglingChild { .. }));
         assert_eq!(
-            broken(|t| t.nodes[1].children[0] = Child::inner(500)),
-            InvariantError::DanglingChild { index: 500 }
+            broken(|t| t.nodes[0].children[0] = Child::inner(500)),
+            InvariantError::DanglingChild { depth: 1 }
         );
-        assert!(matches!(broken(|t| leaf_of(t).count = 0), InvariantError::SharedNode { .. }));
-        assert!(matches!(broken(|t| t.nodes.push(t.nodes[0])), InvariantError::OrphanNode { .. }));
+        assert_eq!(broken(|t| t.indices[3] = 999), InvariantError::UnknownPrimitive { index: 999 });
+        assert_eq!(
+            broken_inside(|t| *t.indices.iter_mut().find(|index| **index == 3).unwrap() = 4),
+            InvariantError::Coverage { index: 3, leaves: 0 }
+        );
+        assert_eq!(
+            broken_inside(|t| *t.indices.iter_mut().find(|index| **index == 4).unwrap() = 3),
+            InvariantError::Coverage { index: 3, leaves: 2 }
+        );
+        // The root's second child is visited first, and then is visited again.
         assert!(matches!(
-            broken(|t| {
-                let other = t.nodes.iter().flat_map(|n| n.children).rfind(|c| c.is_leaf()).unwrap();
-                *leaf_of(t) = other;
-                let everything = Node::new([t.aabb; 2]).planes;
-                t.nodes.iter_mut().for_each(|n| n.planes = everything);
-            }),
-            InvariantError::SlotCoverage { .. }
+            broken_inside(|t| t.nodes[0].children[0] = Child::inner(0)),
+            InvariantError::SharedNode { .. }
         ));
-        assert!(matches!(
-            broken(|t| {
-                // A chain of nodes, each with a leaf and the next.
-                let mut node = Node::new([t.aabb; 2]);
-                node.children = [Child::leaf(0..1); 2];
-                t.nodes = (1..100).map(|i| Node { children: [Child::leaf(0..1), Child::inner(i)], ..node }).collect();
-                t.nodes.push(node);
-                t.root = Child::inner(0);
-            }),
-            InvariantError::TooDeep { depth } if depth == MAX_DEPTH + 1
-        ));
+        assert_eq!(
+            broken_inside(|t| t.nodes[0].children[1] = Child::inner(0)),
+            InvariantError::TooDeep { depth: MAX_DEPTH + 1 }
+        );
+    }
+
+    /// What a check against other primitives than those of the build finds.
+    fn mismatches<H: Outline<f32>>(layout: &H) -> [Result<(), InvariantError>; 4] {
+        let spheres = spheres();
+        let grown = |index: usize| Sphere { radius: if index == 7 { 9.0 } else { 0.25 }, ..spheres[index] };
+        let same = |index: usize| spheres[index].aabb();
+        [
+            check(layout, 0..100, same),
+            check(layout, 0..101, same),
+            check(layout, (0..100).filter(|&index| index != 42), same),
+            check(layout, 0..100, |index| grown(index).aabb()),
+        ]
+    }
+
+    #[test]
+    fn other_primitives_than_those_of_the_build_are_found_in_any_layout() {
+        let (wide, binary) =
+            (Bvh::build(spheres()).unwrap(), Bvh::builder().layout::<Tree>().build(spheres()));
+        for found in [mismatches(wide.layout()), mismatches(binary.unwrap().layout())] {
+            let [same, more, fewer, grown] = found;
+            assert_eq!(same, Ok(()));
+            assert_eq!(more, Err(InvariantError::Coverage { index: 100, leaves: 0 }));
+            assert_eq!(fewer, Err(InvariantError::UnknownPrimitive { index: 42 }));
+            assert!(matches!(grown, Err(InvariantError::LooseBox { depth: 1.. })));
+        }
     }
 }

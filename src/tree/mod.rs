@@ -4,6 +4,7 @@ mod check;
 mod report;
 
 pub use check::InvariantError;
+pub(crate) use check::check;
 pub use report::{LeafSizes, TreeReport};
 
 use crate::geometry::{Aabb, Scalar};
@@ -30,7 +31,7 @@ const _: () = assert!(size_of::<Node<f32>>() == 64 && size_of::<Node<f64>>() == 
 /// Where a child is: a leaf with `count` primitives from slot `first` on, or, if `count` is 0, the
 /// inner node number `first`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Child {
+pub struct Child {
     pub first: u32,
     pub count: u32,
 }
@@ -76,27 +77,34 @@ pub struct Tree<S = f32> {
     pub(crate) nodes: Vec<Node<S>>,
     pub(crate) root: Child,
     pub(crate) aabb: Aabb<S>,
-    /// The input's index of each slot's primitive. Leaves are ranges of slots; behind the last leaf
-    /// come the primitives that were skipped.
+    /// The input's index of each slot's primitive. Leaves are ranges of slots.
     pub(crate) indices: Vec<u32>,
-    /// How many slots are in leaves.
-    pub(crate) len: usize,
 }
 
 impl<S: Scalar> Tree<S> {
     /// The number of primitives in its leaves.
     pub fn len(&self) -> usize {
-        self.len
+        self.indices.len()
     }
 
     /// No primitives in it.
     pub fn is_empty(&self) -> bool {
-        self.len == 0
+        self.indices.is_empty()
     }
 
     /// The box around everything; [`Aabb::EMPTY`] if there is nothing.
     pub fn aabb(&self) -> Aabb<S> {
         self.aabb
+    }
+
+    /// Its shape and estimated cost.
+    pub fn report(&self) -> TreeReport {
+        TreeReport::new(self)
+    }
+
+    /// Bytes of the nodes and of the indices.
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<Node<S>>() * self.nodes.capacity() + size_of::<u32>() * self.indices.capacity()
     }
 
     /// The root, if the tree is not empty.

@@ -1,18 +1,18 @@
 //! What a tree looks like: counts, depths, leaf sizes, SAH cost, bytes.
 
-use super::{Node, Tree};
 use crate::geometry::{Aabb, Scalar};
+use crate::layout::{Outline, Part};
 use alloc::vec::Vec;
 use core::fmt;
 
-/// The shape and the estimated cost of a [`Tree`].
+/// The shape and the estimated cost of a hierarchy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreeReport {
     /// Primitives in leaves.
     pub primitives: usize,
-    /// Nodes with two children.
+    /// Nodes with children: two in a [`Tree`](crate::Tree), up to N in a [`WideTree`](crate::WideTree).
     pub inner_nodes: usize,
-    /// Leaves: one more than inner nodes, or 0 for an empty tree.
+    /// Leaves, 0 for an empty tree.
     pub leaves: usize,
     /// The depth of the deepest leaf; the root has depth 0.
     pub max_depth: usize,
@@ -25,7 +25,7 @@ pub struct TreeReport {
     /// of 1 and over leaves of their number of primitives, each weighted with the node's surface
     /// area over the root's. One unit is a step through an inner node, or a primitive's test.
     pub sah_cost: f64,
-    /// Bytes of the nodes and of the indices. Primitives are not counted.
+    /// Bytes of nodes, indices, and what leaves have copied of the primitives.
     pub memory_bytes: usize,
 }
 
@@ -42,26 +42,32 @@ pub struct LeafSizes {
     pub histogram: [usize; 18],
 }
 
-impl<S: Scalar> Tree<S> {
-    /// Walks the tree once and reports on it.
-    pub fn report(&self) -> TreeReport {
+impl TreeReport {
+    /// Walks a hierarchy once and reports on it.
+    pub(crate) fn new<S: Scalar, H: Outline<S>>(hierarchy: &H) -> Self {
         // In f64, and halved before the difference: an extent may overflow its own scalar.
         let halved = |aabb: &Aabb<S>| Aabb {
             min: aabb.min.map(|x| x.to_f64() * 0.5),
             max: aabb.max.map(|x| x.to_f64() * 0.5),
         };
-        let scale = halved(&self.aabb).area_scale();
+        let root = hierarchy.aabb();
+        let scale = halved(&root).area_scale();
         let area = |aabb: &Aabb<S>| halved(aabb).scaled_half_area(scale);
-        let root_area = area(&self.aabb);
+        let root_area = area(&root);
         // A root without area is a point or a segment: what meets it meets everything in it.
         let weight = |aabb: &Aabb<S>| if root_area > 0.0 { area(aabb) / root_area } else { 1.0 };
 
-        let (mut leaves, mut max_depth, mut depths, mut sah_cost) = (0, 0, 0, 0.0);
-        let mut sizes = LeafSizes { min: self.len, ..LeafSizes::default() };
-        let mut open: Vec<_> = self.root().map(|root| (root, self.aabb, 0)).into_iter().collect();
-        while let Some((child, aabb, depth)) = open.pop() {
-            if child.is_leaf() {
-                let size = child.slots().len();
+        let len = hierarchy.len();
+        let (mut inner_nodes, mut leaves, mut max_depth, mut depths, mut sah_cost) = (0, 0, 0, 0, 0.0);
+        let mut sizes = LeafSizes { min: len, ..LeafSizes::default() };
+        let mut open: Vec<_> = hierarchy.root().map(|place| (place, root, 0)).into_iter().collect();
+        while let Some((place, aabb, depth)) = open.pop() {
+            let mut size = 0;
+            hierarchy.open(place, |part| match part {
+                Part::Child(aabb, place) => open.push((place, aabb, depth + 1)),
+                Part::Primitive(_) => size += 1,
+            });
+            if size > 0 {
                 leaves += 1;
                 depths += depth;
                 max_depth = max_depth.max(depth);
@@ -70,22 +76,21 @@ impl<S: Scalar> Tree<S> {
                 sizes.max = sizes.max.max(size);
                 sizes.histogram[size.min(sizes.histogram.len() - 1)] += 1;
             } else {
-                let node = &self.nodes[child.first as usize];
+                inner_nodes += 1;
                 sah_cost += weight(&aabb);
-                open.extend([0, 1].map(|side| (node.children[side], node.aabb(side), depth + 1)));
             }
         }
         let per_leaf = |total: usize| if leaves > 0 { total as f64 / leaves as f64 } else { 0.0 };
-        sizes.mean = per_leaf(self.len);
-        TreeReport {
-            primitives: self.len,
-            inner_nodes: self.nodes.len(),
+        sizes.mean = per_leaf(len);
+        Self {
+            primitives: len,
+            inner_nodes,
             leaves,
             max_depth,
             mean_leaf_depth: per_leaf(depths),
             leaf_sizes: sizes,
             sah_cost,
-            memory_bytes: size_of::<Node<S>>() * self.nodes.len() + size_of::<u32>() * self.indices.len(),
+            memory_bytes: hierarchy.bytes(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Answers as bits, so that trees and the naive loop can be compared without any tolerance.
 
-use bvhkit::{Barycentrics, Bvh, Hit, Intersect, Ray, Scalar, reference};
+use bvhkit::{Barycentrics, Bvh, Hit, Intersect, Ray, Scalar, Traverse, reference};
 
 /// A payload as bits, so that a NaN in it is equal to itself.
 pub trait Payload: Copy {
@@ -55,7 +55,7 @@ impl Answers {
         }
     }
 
-    pub fn of<P: Intersect<Payload: Payload>>(bvh: &Bvh<P>, ray: &Ray<P::Scalar>) -> Self {
+    pub fn of<P: Intersect<Payload: Payload>, L: Traverse<P>>(bvh: &Bvh<P, L>, ray: &Ray<P::Scalar>) -> Self {
         Self {
             closest: bvh.closest_hit(ray).map(key),
             any: bvh.any_hit(ray),

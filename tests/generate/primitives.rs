@@ -1,6 +1,6 @@
 //! One soup of corners, seen as every kind of primitive.
 
-use bvhkit::{Aabb, Intersect, PreparedRay, Primitive, Scalar, Sphere, Triangle};
+use bvhkit::{Aabb, Intersect, OneByOne, PreparedRay, Primitive, Scalar, Sphere, Triangle};
 
 /// Three points; what a primitive makes of them is its own affair.
 pub type Corners<S> = [[S; 3]; 3];
@@ -46,6 +46,7 @@ impl<S: Scalar> Primitive for Disc<S> {
 
 impl<S: Scalar> Intersect for Disc<S> {
     type Payload = [S; 3];
+    type Leaf = OneByOne;
 
     fn intersect(&self, ray: &PreparedRay<S>) -> Option<(S, [S; 3])> {
         let t = (self.center[2] - ray.origin[2]) / ray.direction[2];

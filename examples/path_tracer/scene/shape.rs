@@ -1,7 +1,8 @@
 //! The primitive of the path tracer: a triangle or an analytic sphere, side by side in one tree.
 
 use bvhkit::{
-    Aabb, Barycentrics, Corners, Intersect, PreparedRay, Primitive, Ray, Sphere, SurfacePoint, Triangle,
+    Aabb, Barycentrics, Corners, Intersect, OneByOne, PreparedRay, Primitive, Ray, Sphere, SurfacePoint,
+    Triangle,
 };
 use glam::Vec3;
 
@@ -33,6 +34,8 @@ impl Primitive for Shape {
 impl Intersect for Shape {
     /// Where on a triangle; a sphere needs no more than the distance.
     type Payload = Option<Barycentrics>;
+    /// Triangles and spheres have no operands in common.
+    type Leaf = OneByOne;
 
     fn intersect(&self, ray: &PreparedRay) -> Option<(f32, Self::Payload)> {
         match self {

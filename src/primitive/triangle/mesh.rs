@@ -1,6 +1,6 @@
 //! The indexed triangle mesh, borrowed from its owner.
 
-use super::{Barycentrics, Corners, Triangle, Watertight};
+use super::{Barycentrics, Corners, Triangle, Watertight, WatertightLeaf};
 use crate::geometry::{Aabb, PreparedRay, Scalar};
 use crate::primitive::{Intersect, Primitive};
 use core::fmt;
@@ -163,10 +163,16 @@ impl<S: Scalar> Primitive for MeshTriangle<'_, S> {
 
 impl<S: Scalar> Intersect for MeshTriangle<'_, S> {
     type Payload = Barycentrics<S>;
+    type Leaf = WatertightLeaf;
 
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay<S>) -> Option<(S, Barycentrics<S>)> {
         Watertight(self).intersect(ray)
+    }
+
+    #[inline(always)]
+    fn put_operands(&self, operands: &mut [S]) {
+        Watertight(self).put_operands(operands);
     }
 }
 

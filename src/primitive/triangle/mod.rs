@@ -2,11 +2,13 @@
 
 mod mesh;
 mod modes;
+mod packed;
 mod sheared;
 mod watertight;
 
 pub use mesh::{MeshError, MeshTriangle, TriangleMesh};
 pub use modes::{Fast, Precise, Watertight};
+pub use packed::{FastLeaf, PreciseLeaf, WatertightLeaf};
 
 use super::{Intersect, Primitive, SurfacePoint};
 use crate::geometry::{Aabb, PreparedRay, Scalar};
@@ -125,9 +127,15 @@ impl<S: Scalar> Primitive for Triangle<S> {
 
 impl<S: Scalar> Intersect for Triangle<S> {
     type Payload = Barycentrics<S>;
+    type Leaf = WatertightLeaf;
 
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay<S>) -> Option<(S, Barycentrics<S>)> {
         Watertight(self).intersect(ray)
+    }
+
+    #[inline(always)]
+    fn put_operands(&self, operands: &mut [S]) {
+        Watertight(self).put_operands(operands);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::sheared::sheared;
 use super::watertight::{bounds, exact_bounds, watertight, watertight_widest};
-use super::{Barycentrics, Corners};
+use super::{Barycentrics, Corners, FastLeaf, PreciseLeaf, WatertightLeaf};
 use crate::geometry::{Aabb, PreparedRay, Scalar};
 use crate::primitive::{Intersect, Primitive};
 
@@ -84,10 +84,16 @@ impl<P: Corners> Primitive for Fast<P> {
 
 impl<P: Corners> Intersect for Fast<P> {
     type Payload = Barycentrics<P::Scalar>;
+    type Leaf = FastLeaf;
 
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, Barycentrics<P::Scalar>)> {
         sheared(self.0.corners(), &ray.shear).filter(|&(t, _)| ray.includes(t))
+    }
+
+    #[inline(always)]
+    fn put_operands(&self, operands: &mut [P::Scalar]) {
+        operands.copy_from_slice(self.0.corners().as_flattened());
     }
 }
 
@@ -107,10 +113,16 @@ impl<P: Corners> Primitive for Watertight<P> {
 
 impl<P: Corners> Intersect for Watertight<P> {
     type Payload = Barycentrics<P::Scalar>;
+    type Leaf = WatertightLeaf;
 
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, Barycentrics<P::Scalar>)> {
         watertight(self.0.corners(), ray, &ray.shear).filter(|&(t, _)| ray.includes(t))
+    }
+
+    #[inline(always)]
+    fn put_operands(&self, operands: &mut [P::Scalar]) {
+        operands.copy_from_slice(self.0.corners().as_flattened());
     }
 }
 
@@ -130,6 +142,7 @@ impl<P: Corners<Scalar = f32>> Primitive for Precise<P> {
 
 impl<P: Corners<Scalar = f32>> Intersect for Precise<P> {
     type Payload = Barycentrics;
+    type Leaf = PreciseLeaf;
 
     #[inline(always)]
     fn intersect(&self, ray: &PreparedRay) -> Option<(f32, Barycentrics)> {
@@ -137,6 +150,11 @@ impl<P: Corners<Scalar = f32>> Intersect for Precise<P> {
         let (t, Barycentrics { u, v }) = watertight_widest(corners, &ray.wide_shear)?;
         let (t, u, v) = (t as f32, u as f32, v as f32);
         ray.includes(t).then_some((t, Barycentrics { u, v }))
+    }
+
+    #[inline(always)]
+    fn put_operands(&self, operands: &mut [f32]) {
+        operands.copy_from_slice(self.0.corners().as_flattened());
     }
 }
 

@@ -103,6 +103,9 @@ fn is_ahead<S: Scalar>([a, b, c]: [S; 3]) -> bool {
     min(min(a, b), c) > S::ZERO
 }
 
+/// In epsilons.
+pub(super) const DOUBT: f64 = 40.0;
+
 /// More than the rounding error of the volume (x cross y) . z: x and y are each off by up to 2 epsilon times
 /// the sum of themselves and z, and each product by some more. In 20,000,000 random cases the error was at most a
 /// sixth of it.
@@ -113,7 +116,7 @@ fn doubt<S: Scalar>(x: S::Vec3, y: S::Vec3, z: S::Vec3) -> S {
         max(max(a.abs(), b.abs()), c.abs())
     };
     let (x, y, z) = (largest(x), largest(y), largest(z));
-    S::from_f64(40.0) * S::EPSILON * z * (z * (x + y) + x * y)
+    S::from_f64(DOUBT) * S::EPSILON * z * (z * (x + y) + x * y)
 }
 
 /// The hit of a triangle whose corners are at `x` and `y` in the ray's frame, computed in the wide scalar; none
@@ -138,7 +141,7 @@ fn settle<S: Scalar>(
         return None;
     }
     let [origin, direction] = ray.map(widen);
-    let shear = Shear::new(origin, direction);
+    let shear = Shear::new(&origin, &direction);
     let t = shear.t(plane_depth(corners.map(widen), &shear));
     Some((S::narrow(t), Barycentrics { u: S::narrow(b / area), v: S::narrow(c / area) }))
 }

@@ -2,7 +2,7 @@
 
 use super::intersect;
 use crate::geometry::{Aabb, PreparedRay, Scalar};
-use crate::primitive::{Corners, Intersect, Primitive, Triangle, Watertight};
+use crate::primitive::{Corners, Intersect, OneByOne, Primitive, Triangle, Watertight};
 
 /// A triangle tested in exact arithmetic: for tests with more triangles than [`hits`](super::hits) and its
 /// like can ask one by one. Some hundred times slower than the modes that renderers use.
@@ -41,6 +41,7 @@ impl<P: Corners> Primitive for Exact<P> {
 
 impl<P: Corners> Intersect for Exact<P> {
     type Payload = ();
+    type Leaf = OneByOne;
 
     fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, ())> {
         let [a, b, c] = self.0.corners();

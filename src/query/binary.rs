@@ -15,17 +15,27 @@
 
 use super::counters::Recorder;
 use super::stack::Stack;
+use super::{Traverse, Visitor};
+use crate::geometry::{PreparedRay, Ray};
 use crate::geometry::{Scalar, Slabs, max, min};
+use crate::primitive::Intersect;
 use crate::simd::Lanes4;
 use crate::tree::{Child, MAX_DEPTH, Node, Tree};
-use core::ops::{ControlFlow, Range};
+use fearless_simd::Simd;
 
-/// A query, as the loop sees it.
-pub(super) trait Visitor<S> {
-    /// What begins beyond this t is of no interest any more.
-    fn limit(&self) -> S;
-    /// A leaf whose box the ray enters before the limit.
-    fn leaf(&mut self, slots: Range<usize>, recorder: &mut impl Recorder) -> ControlFlow<()>;
+impl<P: Intersect> Traverse<P> for Tree<P::Scalar> {
+    const IS_WIDE: bool = false;
+
+    #[inline(always)]
+    fn traverse<I: Simd>(
+        &self,
+        _: I,
+        ray: &Ray<P::Scalar>,
+        visitor: &mut impl Visitor<P>,
+        recorder: &mut impl Recorder,
+    ) {
+        walk(self, &ray.prepare(), visitor, recorder);
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -36,24 +46,28 @@ struct Pending<S> {
 
 /// Shows `visitor` the leaves whose boxes the ray meets, nearer children first, until it breaks.
 #[inline(always)]
-pub(super) fn traverse<S: Scalar>(
-    tree: &Tree<S>,
-    slabs: &Slabs<S>,
-    visitor: &mut impl Visitor<S>,
+fn walk<P: Intersect>(
+    tree: &Tree<P::Scalar>,
+    ray: &PreparedRay<P::Scalar>,
+    visitor: &mut impl Visitor<P>,
     recorder: &mut impl Recorder,
 ) {
+    let slabs = &ray.slabs;
     let mut child = match tree.root() {
         Some(root) if slabs.entry(&tree.aabb).is_some_and(|entry| entry <= visitor.limit()) => root,
         _ => return,
     };
     // One entry for each level at the most.
     let mut memory = Stack::memory();
-    let mut stack = Stack::<Pending<S>, MAX_DEPTH>::new(&mut memory);
+    let mut stack = Stack::<Pending<P::Scalar>, MAX_DEPTH>::new(&mut memory);
     loop {
         if child.is_leaf() {
             recorder.leaf();
-            if visitor.leaf(child.slots(), recorder).is_break() {
-                return;
+            for &index in &tree.indices[child.slots()] {
+                recorder.primitive();
+                if visitor.primitive(index, ray).is_break() {
+                    return;
+                }
             }
         } else {
             recorder.node();
@@ -131,7 +145,7 @@ fn enter_children_behind<S: Scalar>(node: &Node<S>, slabs: &Slabs<S>, limit: S) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Aabb, Ray};
+    use crate::geometry::Aabb;
 
     #[test]
     fn one_box_and_two_boxes_round_alike() {

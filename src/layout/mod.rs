@@ -1,0 +1,132 @@
+//! The memory that queries walk, made from the binary tree.
+
+mod blocks;
+mod collapse;
+mod wide;
+
+pub(crate) use collapse::Contents;
+pub use wide::WideTree;
+pub(crate) use wide::{MAX_PENDING, NOBODY, Reference, WideNode};
+
+use crate::geometry::{Aabb, Scalar};
+use crate::primitive::{Intersect, Leaf, Primitive};
+use crate::simd::{Count, Width};
+use crate::tree::{Child, Node, Tree};
+
+/// How a hierarchy lies in memory: [`WideTree`], the default, for speed; [`Tree`], as it was built.
+///
+/// A type parameter of [`Bvh`](crate::Bvh), chosen by [`Builder::layout`](crate::Builder::layout). What is not chosen
+/// is not compiled. Answers are the same bits in all.
+pub trait Layout<P: Primitive>: Outline<P::Scalar> + Sized {
+    /// Lays out a tree over the primitives with its indices.
+    #[doc(hidden)]
+    fn lay_out(tree: Tree<P::Scalar>, primitives: &[P]) -> Option<Self>;
+}
+
+/// What there is to know about any hierarchy without a ray.
+#[doc(hidden)]
+pub trait Outline<S: Scalar> {
+    /// Where a node or a leaf lies.
+    type Place: Copy;
+    /// None if it is empty.
+    fn root(&self) -> Option<Self::Place>;
+    /// The box around everything.
+    fn aabb(&self) -> Aabb<S>;
+    /// Primitives in leaves.
+    fn len(&self) -> usize;
+    /// Bytes of memory.
+    fn bytes(&self) -> usize;
+    /// Shows what is in a place, one by one. False if there is no such place.
+    fn open(&self, place: Self::Place, show: impl FnMut(Part<S, Self::Place>)) -> bool;
+}
+
+/// What is in a node or in a leaf.
+#[doc(hidden)]
+pub enum Part<S, B> {
+    /// A child with its box.
+    Child(Aabb<S>, B),
+    /// A primitive, by its index in the input.
+    Primitive(u32),
+}
+
+impl<S: Scalar> Outline<S> for Tree<S> {
+    type Place = Child;
+
+    fn root(&self) -> Option<Child> {
+        Tree::root(self)
+    }
+    fn aabb(&self) -> Aabb<S> {
+        self.aabb
+    }
+    fn len(&self) -> usize {
+        self.indices.len()
+    }
+    fn bytes(&self) -> usize {
+        self.memory_bytes()
+    }
+    fn open(&self, place: Child, show: impl FnMut(Part<S, Child>)) -> bool {
+        if place.is_leaf() {
+            let indices = self.indices.get(place.slots());
+            indices.map(|indices| indices.iter().copied().map(Part::Primitive).for_each(show)).is_some()
+        } else {
+            let node = self.nodes.get(place.first as usize);
+            let child = |node: &Node<S>, side: usize| Part::Child(node.aabb(side), node.children[side]);
+            node.map(|node| [0, 1].map(|side| child(node, side)).into_iter().for_each(show)).is_some()
+        }
+    }
+}
+
+impl<P: Primitive> Layout<P> for Tree<P::Scalar> {
+    fn lay_out(tree: Self, _: &[P]) -> Option<Self> {
+        Some(tree)
+    }
+}
+
+impl<S: Scalar, const N: usize> Outline<S> for WideTree<S, N> {
+    type Place = Reference;
+
+    fn root(&self) -> Option<Reference> {
+        self.root
+    }
+    fn aabb(&self) -> Aabb<S> {
+        self.aabb
+    }
+    fn len(&self) -> usize {
+        self.len
+    }
+    fn bytes(&self) -> usize {
+        self.blocks.bytes()
+    }
+    fn open(&self, place: Reference, show: impl FnMut(Part<S, Reference>)) -> bool {
+        if place.is_leaf() {
+            let indices = self.leaf(place, self.operands).indices.iter().copied();
+            indices.filter(|&index| index != NOBODY).map(Part::Primitive).for_each(show);
+        } else {
+            let node = self.node(place);
+            let children = (0..N).filter_map(|lane| node.child(lane));
+            children.map(|(aabb, place)| Part::Child(aabb, place)).for_each(show);
+        }
+        true
+    }
+}
+
+impl<P: Intersect, const N: usize> Layout<P> for WideTree<P::Scalar, N>
+where
+    Count<N>: Width,
+{
+    fn lay_out(tree: Tree<P::Scalar>, primitives: &[P]) -> Option<Self> {
+        Self::new(&tree, &primitives)
+    }
+}
+
+impl<P: Intersect> Contents<P::Scalar> for &[P] {
+    fn operands(&self) -> usize {
+        <P::Leaf as Leaf<_, _>>::OPERANDS
+    }
+    fn put(&self, index: u32, operands: &mut [P::Scalar]) {
+        self[index as usize].put_operands(operands);
+    }
+    fn aabb(&self, index: u32) -> Aabb<P::Scalar> {
+        self[index as usize].aabb()
+    }
+}

@@ -1,0 +1,109 @@
+//! Rays in turns: while one waits for memory, others go on.
+//!
+//! Some rays are in flight, each with its own stack. They take turns: a step each, after which what it will need next is
+//! fetched into the cache. Each ray makes the steps that it would make alone.
+
+use super::Visitor;
+use super::pending::{Memory, Pending};
+use super::wide::{SlabLanes, first, step, suits};
+use crate::geometry::{PreparedRay, Ray, Shear, Slabs};
+use crate::layout::{Reference, WideTree};
+use crate::primitive::Intersect;
+use crate::simd::{Count, Width};
+use alloc::vec::Vec;
+use fearless_simd::Simd;
+
+/// Rays in flight.
+const IN_FLIGHT: usize = 16;
+
+/// A ray under way.
+struct Flight<P: Intersect, V> {
+    number: usize,
+    ray: Ray<P::Scalar>,
+    slabs: Slabs<P::Scalar>,
+    shear: Shear<P::Scalar>,
+    suits: bool,
+    next: Reference,
+    /// On the stack.
+    waiting: usize,
+    visitor: V,
+}
+
+#[inline(always)]
+pub(super) fn traverse_in_turns<'r, P: Intersect, I: Simd, V: Visitor<P>, const N: usize>(
+    tree: &WideTree<P::Scalar, N>,
+    isa: I,
+    mut rays: impl Iterator<Item = (usize, &'r Ray<P::Scalar>)>,
+    start: impl Fn(&Ray<P::Scalar>) -> V,
+    mut finish: impl FnMut(usize, V),
+) where
+    Count<N>: Width,
+{
+    let mut launch = |finish: &mut dyn FnMut(usize, V)| {
+        for (number, &ray) in rays.by_ref() {
+            let visitor = start(&ray);
+            let prepared = ray.prepare();
+            let PreparedRay { slabs, shear, .. } = prepared;
+            match first(tree, &prepared, visitor.limit()) {
+                Some(next) => {
+                    let suits = suits::<P, N>(tree, &prepared);
+                    return Some(Flight::<P, V> {
+                        number,
+                        ray,
+                        slabs,
+                        shear,
+                        suits,
+                        next,
+                        waiting: 0,
+                        visitor,
+                    });
+                }
+                None => finish(number, visitor),
+            }
+        }
+        None
+    };
+    // On the heap: they are too large for a small thread's stack.
+    let mut stacks: Vec<Memory<P::Scalar>> = (0..IN_FLIGHT).map(|_| Memory::new()).collect();
+    let mut flights = Vec::with_capacity(IN_FLIGHT);
+    while flights.len() < IN_FLIGHT
+        && let Some(flight) = launch(&mut finish)
+    {
+        flights.push(Some(flight));
+    }
+    let mut under_way = flights.len();
+    while under_way > 0 {
+        for (slot, stack) in flights.iter_mut().zip(&mut stacks) {
+            let Some(flight) = slot else { continue };
+            let prepared = PreparedRay::of_parts(&flight.ray, flight.slabs, flight.shear);
+            let lanes = SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new(isa, &flight.slabs);
+            let mut pending = Pending::new(stack, flight.waiting);
+            let visitor = &mut flight.visitor;
+            match step(
+                isa,
+                tree,
+                flight.next,
+                &prepared,
+                &flight.ray,
+                &lanes,
+                flight.suits,
+                &mut pending,
+                visitor,
+                &mut (),
+            ) {
+                Some(next) => {
+                    tree.prefetch(next);
+                    flight.next = next;
+                    flight.waiting = pending.len();
+                }
+                None => {
+                    let done = core::mem::replace(slot, launch(&mut finish));
+                    under_way -= usize::from(slot.is_none());
+                    if let Some(Flight { number, visitor, .. }) = done {
+                        finish(number, visitor);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! The stack of a wide traversal: what was met and is still to be visited.
+
+use crate::layout::{MAX_PENDING, Reference};
+use crate::simd::Window;
+use core::mem::MaybeUninit;
+
+/// With room for all lanes of one more node, of which some are written and not kept.
+const CAPACITY: usize = MAX_PENDING + 16;
+
+/// Memory for [`Pending`], on the thread's stack and not cleared. For `f32` it is below a page: above, every query
+/// would first touch it page by page.
+pub(super) struct Memory<S> {
+    references: [MaybeUninit<Reference>; CAPACITY],
+    entries: [MaybeUninit<S>; CAPACITY],
+}
+
+impl<S: Copy> Memory<S> {
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self {
+            references: [const { MaybeUninit::uninit() }; CAPACITY],
+            entries: [const { MaybeUninit::uninit() }; CAPACITY],
+        }
+    }
+}
+
+/// References, and where the ray enters their boxes. A last-in first-out stack.
+pub(super) struct Pending<'m, S> {
+    memory: &'m mut Memory<S>,
+    /// `references[..len]` are initialised, and of a query in order so are `entries[..len]`.
+    len: usize,
+}
+
+impl<'m, S: Copy + PartialOrd> Pending<'m, S> {
+    /// `len` is 0, or what [`len`](Self::len) was of the last one on the same memory.
+    #[inline(always)]
+    pub fn new(memory: &'m mut Memory<S>, len: usize) -> Self {
+        Self { memory, len }
+    }
+
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    #[inline(always)]
+    pub fn push(&mut self, reference: Reference, entry: S) {
+        debug_assert!(self.len < CAPACITY);
+        // SAFETY: a path leaves at most `MAX_PENDING` behind, by construction of the tree.
+        unsafe {
+            self.memory.references.get_unchecked_mut(self.len).write(reference);
+            self.memory.entries.get_unchecked_mut(self.len).write(entry);
+        }
+        self.len += 1;
+    }
+
+    /// Room for the lanes of a node above what is there; `grow` keeps some.
+    #[inline(always)]
+    pub fn windows(&mut self) -> (&mut Window<Reference>, &mut Window<S>) {
+        debug_assert!(self.len <= MAX_PENDING);
+        // SAFETY: `len` is at most `MAX_PENDING`, by construction of the tree: 16 more are inside.
+        unsafe {
+            (
+                &mut *self.memory.references.as_mut_ptr().add(self.len).cast(),
+                &mut *self.memory.entries.as_mut_ptr().add(self.len).cast(),
+            )
+        }
+    }
+
+    /// Keeps the first `count` of the windows, which have been written.
+    #[inline(always)]
+    pub fn grow(&mut self, count: usize) {
+        self.len += count;
+    }
+
+    /// Moves the last one down past those above `base` that are nearer: the farthest is to be the lowest.
+    #[inline(always)]
+    pub fn sink(&mut self, base: usize) {
+        let (references, entries) = (&mut self.memory.references, &mut self.memory.entries);
+        let mut place = self.len - 1;
+        // SAFETY: below `len` all are initialised.
+        while place > base && unsafe { entries[place - 1].assume_init() < entries[place].assume_init() } {
+            references.swap(place - 1, place);
+            entries.swap(place - 1, place);
+            place -= 1;
+        }
+    }
+
+    /// The last one.
+    #[inline(always)]
+    pub fn pop(&mut self) -> Option<Reference> {
+        self.len = self.len.checked_sub(1)?;
+        // SAFETY: it was below `len` just now.
+        Some(unsafe { self.memory.references.get_unchecked(self.len).assume_init() })
+    }
+
+    /// The last one that begins at or before `limit`; those after it are dropped.
+    #[inline(always)]
+    pub fn pop_before(&mut self, limit: S) -> Option<Reference> {
+        loop {
+            let reference = self.pop()?;
+            // SAFETY: it was below `len` just now.
+            let entry = unsafe { self.memory.entries.get_unchecked(self.len).assume_init() };
+            if entry <= limit {
+                return Some(reference);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_farthest_sinks_and_what_is_beyond_the_limit_is_dropped() {
+        let place = |k: usize| Reference::node(k * 64);
+        let mut memory = Memory::new();
+        let mut pending = Pending::<f32>::new(&mut memory, 0);
+        pending.push(place(0), 1.0);
+        for (k, entry) in [(1, 3.0), (2, 5.0), (3, 4.0)] {
+            pending.push(place(k), entry);
+            pending.sink(1);
+        }
+        assert_eq!(pending.pop_before(3.5), Some(place(1)));
+        assert_eq!(pending.pop(), Some(place(3)));
+        assert_eq!(pending.pop_before(0.5), None);
+        assert_eq!(pending.pop(), None);
+    }
+}

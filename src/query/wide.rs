@@ -1,0 +1,280 @@
+//! The traversal loop of the wide tree.
+//!
+//! ```text
+//! step: an inner node tests the boxes of all its children at once
+//!         none met   pop
+//!         one met    it is next
+//!         two met    the nearer is next, the other goes on the stack with its entry distance
+//!         more met   the nearest is next, the others go on the stack by distance, the nearest on top;
+//!                    if any hit will do, they go there as they lie in the node, and the last is next
+//!       a leaf tests its primitives, all at once if they are packed, then pop
+//! pop:  entries beyond the visitor's limit, which may have shrunk since, are dropped
+//! ```
+
+use super::children::{last, nearest, next_lane};
+use super::counters::Recorder;
+use super::pending::{Memory, Pending};
+use super::{Traverse, Visitor, flights};
+use crate::geometry::{PreparedRay, Ray, Scalar, Slabs};
+use crate::layout::{NOBODY, Outline, Reference, WideNode, WideTree};
+use crate::primitive::{Found, Intersect, LEAF_WIDTH, Leaf, Operands};
+use crate::simd::{Count, Lanes, Width};
+use core::ops::ControlFlow;
+use fearless_simd::Simd;
+
+impl<P: Intersect, const N: usize> Traverse<P> for WideTree<P::Scalar, N>
+where
+    Count<N>: Width,
+{
+    const IS_WIDE: bool = true;
+
+    #[inline(always)]
+    fn traverse<I: Simd>(
+        &self,
+        isa: I,
+        ray: &Ray<P::Scalar>,
+        visitor: &mut impl Visitor<P>,
+        recorder: &mut impl Recorder,
+    ) {
+        let prepared = ray.prepare();
+        let Some(mut next) = first(self, &prepared, visitor.limit()) else { return };
+        let suits = suits::<P, N>(self, &prepared);
+        let lanes = SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new(isa, &prepared.slabs);
+        let mut memory = Memory::new();
+        let mut pending = Pending::new(&mut memory, 0);
+        while let Some(place) =
+            step(isa, self, next, &prepared, ray, &lanes, suits, &mut pending, visitor, recorder)
+        {
+            next = place;
+        }
+    }
+
+    #[inline(always)]
+    fn traverse_in_turns<'r, I: Simd, V: Visitor<P>>(
+        &self,
+        isa: I,
+        rays: impl Iterator<Item = (usize, &'r Ray<P::Scalar>)>,
+        start: impl Fn(&Ray<P::Scalar>) -> V,
+        finish: impl FnMut(usize, V),
+    ) {
+        flights::traverse_in_turns(self, isa, rays, start, finish);
+    }
+}
+
+/// Where a ray begins, if it has to.
+#[inline(always)]
+pub(super) fn first<S: Scalar, const N: usize>(
+    tree: &WideTree<S, N>,
+    ray: &PreparedRay<S>,
+    limit: S,
+) -> Option<Reference> {
+    let root = tree.root()?;
+    // The boxes of a node's children will tell whether it is met.
+    if root.is_leaf() {
+        // A copy, and no closure: a reference would keep the prepared ray in memory on every other way.
+        let slabs = ray.slabs;
+        let entry = slabs.entry(&tree.aabb())?;
+        if !(entry <= limit) {
+            return None;
+        }
+    }
+    Some(root)
+}
+
+/// Whether the leaves' tests in lanes are good for this ray.
+#[inline(always)]
+pub(super) fn suits<P: Intersect, const N: usize>(
+    tree: &WideTree<P::Scalar, N>,
+    ray: &PreparedRay<P::Scalar>,
+) -> bool {
+    tree.is_ordinary() && <P::Leaf as Leaf<_, _>>::suits(ray)
+}
+
+/// Visits a place, and tells which is next, if any is.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "what a loop has in registers")]
+pub(super) fn step<P: Intersect, L, I: Simd, V: Visitor<P>, R: Recorder, const N: usize>(
+    isa: I,
+    tree: &WideTree<P::Scalar, N>,
+    place: Reference,
+    prepared: &PreparedRay<P::Scalar>,
+    ray: &Ray<P::Scalar>,
+    lanes: &SlabLanes<P::Scalar, L>,
+    suits: bool,
+    pending: &mut Pending<'_, P::Scalar>,
+    visitor: &mut V,
+    recorder: &mut R,
+) -> Option<Reference>
+where
+    L: Lanes<P::Scalar, Isa = I>,
+{
+    if place.is_leaf() {
+        recorder.leaf();
+        if leaf::<P, V, R, I, N>(isa, tree, place, prepared, ray, suits, visitor, recorder).is_break() {
+            return None;
+        }
+    } else {
+        recorder.node();
+        let node = tree.node(place);
+        let (near, met) = if lanes.t_min < P::Scalar::ZERO {
+            let (near, met) = enter_behind(node, ray, visitor.limit());
+            // SAFETY: sixteen scalars, and no lanes are more.
+            (unsafe { L::load(isa, near.as_ptr()) }, met)
+        } else {
+            lanes.enter(node, visitor.limit())
+        };
+        if met != 0 {
+            return Some(if met & (met - 1) == 0 {
+                node.children[met.trailing_zeros() as usize % N]
+            } else if V::IN_ORDER {
+                nearest(node, near, met, lanes.t_min, pending)
+            } else {
+                last::<_, L, N>(isa, node, met, pending)
+            });
+        }
+    }
+    if V::IN_ORDER { pending.pop_before(visitor.limit()) } else { pending.pop() }
+}
+
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "what a loop has in registers")]
+fn leaf<P: Intersect, V: Visitor<P>, R: Recorder, I: Simd, const N: usize>(
+    isa: I,
+    tree: &WideTree<P::Scalar, N>,
+    leaf: Reference,
+    prepared: &PreparedRay<P::Scalar>,
+    ray: &Ray<P::Scalar>,
+    suits: bool,
+    visitor: &mut V,
+    recorder: &mut R,
+) -> ControlFlow<()> {
+    let operands = <P::Leaf as Leaf<P::Scalar, P::Payload>>::OPERANDS;
+    let block = tree.leaf(leaf, operands);
+    for &index in block.indices {
+        if index != NOBODY {
+            recorder.primitive();
+        }
+    }
+    if operands == 0 {
+        for &index in block.indices {
+            if index == NOBODY {
+                break;
+            }
+            visitor.primitive(index, prepared)?;
+        }
+        return ControlFlow::Continue(());
+    }
+    let operands = Operands::<_, <Count<8> as Width>::Lanes<P::Scalar, I>>::new(isa, block.operands);
+    let found = if suits {
+        P::Leaf::test(&operands, prepared, visitor.limit())
+    } else {
+        let all = block.indices.iter().rev().fold(0, |all, &index| all << 1 | u32::from(index != NOBODY));
+        Found::to_be_asked(all, &operands)
+    };
+    if found.sure != 0 {
+        visitor.found(&found, block.indices)?;
+    }
+    let mut unsure = found.unsure;
+    if unsure == 0 {
+        return ControlFlow::Continue(());
+    }
+    if <P::Leaf as Leaf<_, _>>::SETTLES {
+        let (told, flow) = ask_anew(*visitor, unsure, block.indices, ray);
+        *visitor = told;
+        return flow;
+    }
+    while unsure != 0 {
+        visitor.primitive(block.indices[next_lane(&mut unsure) % LEAF_WIDTH], prepared)?;
+    }
+    ControlFlow::Continue(())
+}
+
+/// Asks the primitives of some lanes about a ray that is prepared anew, with a copy of the visitor: a reference to either
+/// would keep it in memory on every other way, with all that most rays do not need of a prepared one.
+#[cold]
+#[inline(never)]
+fn ask_anew<P: Intersect, V: Visitor<P>>(
+    mut visitor: V,
+    mut lanes: u32,
+    indices: &[u32; LEAF_WIDTH],
+    ray: &Ray<P::Scalar>,
+) -> (V, ControlFlow<()>) {
+    let prepared = ray.prepare();
+    while lanes != 0 {
+        let index = indices[next_lane(&mut lanes) % LEAF_WIDTH];
+        if visitor.primitive(index, &prepared).is_break() {
+            return (visitor, ControlFlow::Break(()));
+        }
+    }
+    (visitor, ControlFlow::Continue(()))
+}
+
+/// The slabs in lanes.
+pub(super) struct SlabLanes<S, L> {
+    origin: [L; 3],
+    inv_near: [L; 3],
+    inv_far: [L; 3],
+    /// Where in a node the near planes of each axis lie, in bytes.
+    first: [usize; 3],
+    /// Where the far planes do.
+    last: [usize; 3],
+    t_min: S,
+}
+
+impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
+    #[inline(always)]
+    pub fn new(isa: L::Isa, slabs: &Slabs<S>) -> Self {
+        let splat = |[x, y, z]: [S; 3]| [L::splat(isa, x), L::splat(isa, y), L::splat(isa, z)];
+        let [x, y, z] = slabs.negative;
+        let row = |axis: usize, is_max: bool| (2 * axis + usize::from(is_max)) * size_of::<S>() * L::COUNT;
+        Self {
+            origin: splat(slabs.origin),
+            inv_near: splat(slabs.inv_near),
+            inv_far: splat(slabs.inv_far),
+            first: [row(0, x), row(1, y), row(2, z)],
+            last: [row(0, !x), row(1, !y), row(2, !z)],
+            // +0, whose bits are those of an integer.
+            t_min: slabs.t_min + S::ZERO,
+        }
+    }
+
+    /// Where the ray enters the children's boxes, from t_min on, and which of them it meets up to `limit`.
+    #[inline(always)]
+    fn enter<const N: usize>(&self, node: &WideNode<S, N>, limit: S) -> (L, u32) {
+        const { assert!(N == L::COUNT) }
+        let isa = self.origin[0].isa();
+        let (mut near, mut far) = (L::splat(isa, self.t_min), L::splat(isa, limit));
+        for axis in 0..3 {
+            // SAFETY: rows of N scalars, at the places of `new`.
+            let (first, last) = unsafe {
+                let rows = node.planes.as_ptr().cast::<u8>();
+                (
+                    L::load(isa, rows.add(self.first[axis]).cast()),
+                    L::load(isa, rows.add(self.last[axis]).cast()),
+                )
+            };
+            let (first, last) = (first - self.origin[axis], last - self.origin[axis]);
+            let (inv_near, inv_far) = (self.inv_near[axis], self.inv_far[axis]);
+            near = (first * inv_near).max(near);
+            far = (last * inv_far).min(far);
+        }
+        (near, L::bits(near.le(far)))
+    }
+}
+
+/// The same for a ray that also looks behind its origin, where the padding has the other sign.
+#[cold]
+#[inline(never)]
+fn enter_behind<S: Scalar, const N: usize>(node: &WideNode<S, N>, ray: &Ray<S>, limit: S) -> ([S; 16], u32) {
+    let slabs = Slabs::new(ray);
+    let (mut entries, mut met) = ([S::ZERO; 16], 0);
+    for (lane, entry) in entries.iter_mut().enumerate().take(N) {
+        if let Some((aabb, _)) = node.child(lane)
+            && let Some(t) = slabs.entry(&aabb).filter(|&t| t <= limit)
+        {
+            *entry = t;
+            met |= 1 << lane;
+        }
+    }
+    (entries, met)
+}

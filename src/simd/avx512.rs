@@ -1,0 +1,153 @@
+//! What a node's children need of AVX-512 beyond the common operations: sorting them in registers.
+
+use core::arch::x86_64::*;
+use fearless_simd::Avx512;
+
+use super::lanes::Window;
+
+/// Of two children or more, the lane of the nearest; all are written to the windows, farthest first.
+///
+/// A key is a distance, not below +0, whose last four bits are replaced by its lane: as an integer it orders as the
+/// distance does, and one permutation fetches the children. So the entries written are up to 16 ulps smaller than
+/// the distances, never larger. Keys are packed first: four and fewer, which most are, need half the steps both of the
+/// reduction, for whose result the next node waits, and of the sorting network.
+#[inline(always)]
+pub fn sort(
+    _: Avx512,
+    near: __m512,
+    met: u16,
+    children: __m512i,
+    references: &mut Window<u32>,
+    entries: &mut Window<f32>,
+) -> u32 {
+    // SAFETY: the token is the proof of AVX-512; the windows are 64 bytes long, and any bits will do for what is
+    // left over in them.
+    unsafe {
+        let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+        let low_bits = _mm512_set1_epi32(15);
+        let keys = _mm512_or_si512(_mm512_andnot_si512(low_bits, _mm512_castps_si512(near)), lanes);
+        // Merged with something else than zeros: masked with zeros it waits for what was in the register before.
+        let none = _mm512_set1_epi32(-1);
+        let keys = _mm512_mask_compress_epi32(none, met, keys);
+        let count = met.count_ones();
+        // Complements, the nearest the largest but for what is left over, which goes to the end.
+        let kept = (1u32 << count) - 1;
+        let turned = _mm512_mask_xor_epi32(none, kept as u16, keys, none);
+        if count <= 4 {
+            let nearest = min4(_mm512_castsi512_si128(keys));
+            let sorted = sort4(_mm512_castsi512_si128(turned));
+            let sorted = _mm_xor_si128(sorted, _mm_set1_epi32(-1));
+            let places = _mm512_permutexvar_epi32(_mm512_castsi128_si512(sorted), children);
+            _mm_storeu_si128(references.as_mut_ptr().cast(), _mm512_castsi512_si128(places));
+            let distances = _mm_andnot_si128(_mm_set1_epi32(15), sorted);
+            _mm_storeu_si128(entries.as_mut_ptr().cast(), distances);
+            nearest & 15
+        } else {
+            let (nearest, sorted) = if count <= 8 {
+                let keys = _mm512_castsi512_si256(keys);
+                let nearest =
+                    min4(_mm_min_epu32(_mm256_castsi256_si128(keys), _mm256_extracti128_si256::<1>(keys)));
+                (nearest, _mm512_castsi256_si512(sort8(_mm512_castsi512_si256(turned))))
+            } else {
+                (_mm512_reduce_min_epu32(keys), sort16(turned))
+            };
+            let sorted = _mm512_xor_si512(sorted, none);
+            let places = _mm512_permutexvar_epi32(sorted, children);
+            _mm512_storeu_si512(references.as_mut_ptr().cast(), places);
+            _mm512_storeu_si512(entries.as_mut_ptr().cast(), _mm512_andnot_si512(low_bits, sorted));
+            nearest & 15
+        }
+    }
+}
+
+#[inline]
+#[target_feature(enable = "avx512f,avx512vl")]
+fn min4(v: __m128i) -> u32 {
+    let v = _mm_min_epu32(v, _mm_shuffle_epi32::<0b11_10_11_10>(v));
+    let v = _mm_min_epu32(v, _mm_shuffle_epi32::<0b01_01_01_01>(v));
+    _mm_cvtsi128_si32(v) as u32
+}
+
+/// The children met, in the order of their lanes.
+#[inline(always)]
+pub fn compress(_: Avx512, met: u16, children: __m512i, references: &mut Window<u32>) {
+    // SAFETY: the token is the proof of AVX-512; the window is 64 bytes long.
+    unsafe {
+        // Merged with something else than zeros: masked with zeros it waits for what was in the register before.
+        let packed = _mm512_mask_compress_epi32(_mm512_set1_epi32(-1), met, children);
+        _mm512_storeu_si512(references.as_mut_ptr().cast(), packed);
+    }
+}
+
+/// One step of a sorting network: each lane and its partner exchanged where the mask has the larger.
+macro_rules! step {
+    ($v:ident, $permuted:expr, $mask:literal, $min:ident, $mask_max:ident) => {{
+        let partner = $permuted;
+        $mask_max($min($v, partner), $mask, $v, partner)
+    }};
+}
+
+#[inline]
+#[target_feature(enable = "avx512f,avx512vl")]
+fn sort4(v: __m128i) -> __m128i {
+    let v = step!(v, _mm_shuffle_epi32::<0b10_11_00_01>(v), 0b1010, _mm_min_epu32, _mm_mask_max_epu32);
+    let v = step!(v, _mm_shuffle_epi32::<0b01_00_11_10>(v), 0b1100, _mm_min_epu32, _mm_mask_max_epu32);
+    step!(v, _mm_shuffle_epi32::<0b11_01_10_00>(v), 0b0100, _mm_min_epu32, _mm_mask_max_epu32)
+}
+
+/// Of 19 comparisons in 6 steps (Knuth, The Art of Computer Programming, volume 3, 5.3.4).
+#[inline]
+#[target_feature(enable = "avx512f,avx512vl")]
+fn sort8(v: __m256i) -> __m256i {
+    macro_rules! step8 {
+        ($v:ident, $p:expr, $mask:literal) => {{
+            let [a, b, c, d, e, f, g, h]: [i32; 8] = $p;
+            let order = _mm256_setr_epi32(a, b, c, d, e, f, g, h);
+            step!($v, _mm256_permutexvar_epi32(order, $v), $mask, _mm256_min_epu32, _mm256_mask_max_epu32)
+        }};
+    }
+    let v = step8!(v, [2, 3, 0, 1, 6, 7, 4, 5], 0b1100_1100);
+    let v = step8!(v, [4, 5, 6, 7, 0, 1, 2, 3], 0b1111_0000);
+    let v = step8!(v, [1, 0, 3, 2, 5, 4, 7, 6], 0b1010_1010);
+    let v = step8!(v, [0, 1, 4, 5, 2, 3, 6, 7], 0b0011_0000);
+    let v = step8!(v, [0, 4, 2, 6, 1, 5, 3, 7], 0b0101_0000);
+    step8!(v, [0, 2, 1, 4, 3, 6, 5, 7], 0b0101_0100)
+}
+
+/// Batcher's odd-even merge sort, in 10 steps.
+#[cold]
+#[target_feature(enable = "avx512f")]
+fn sort16(mut v: __m512i) -> __m512i {
+    let mut size = 1;
+    while size < 16 {
+        let mut distance = size;
+        while distance > 0 {
+            let (mut order, mut larger) = ([0i32; 16], 0u16);
+            for lane in 0..16usize {
+                // Batcher's rule: `lane` is the lower of a pair `distance` apart.
+                let is_lower = |lane: usize| {
+                    let start = distance % size;
+                    lane >= start
+                        && lane + distance < 16
+                        && (lane - start) / distance % 2 == 0
+                        && lane / (2 * size) == (lane + distance) / (2 * size)
+                };
+                order[lane] = if is_lower(lane) {
+                    (lane + distance) as i32
+                } else if lane >= distance && is_lower(lane - distance) {
+                    larger |= 1 << lane;
+                    (lane - distance) as i32
+                } else {
+                    lane as i32
+                };
+            }
+            // SAFETY: 64 bytes.
+            let order = unsafe { _mm512_loadu_si512(order.as_ptr().cast()) };
+            let partner = _mm512_permutexvar_epi32(order, v);
+            v = _mm512_mask_max_epu32(_mm512_min_epu32(v, partner), larger, v, partner);
+            distance /= 2;
+        }
+        size *= 2;
+    }
+    v
+}

@@ -1,0 +1,17 @@
+//! Several scalars side by side, and the instruction sets that compute with them.
+//!
+//! Kernels are generic inline functions over [`Lanes`], compiled once for each instruction set below one
+//! `#[target_feature]` function (see [`InstructionSet`]). Arithmetic is the plain IEEE 754 one on all of
+//! them, nothing fused: equal operands give equal bits whatever the machine.
+
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod backend;
+mod lanes;
+mod pairs;
+
+pub use backend::InstructionSet;
+pub(crate) use backend::{Backend, Kernel};
+pub use lanes::Lanes;
+pub(crate) use lanes::{Count, Pair, Width, Window};
+pub use pairs::Lanes4;

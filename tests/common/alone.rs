@@ -1,0 +1,26 @@
+//! A primitive that shares no leaf with its like, so that unlike ones fit behind one pointer.
+
+use bvhkit::{Aabb, Intersect, OneByOne, PreparedRay, Primitive};
+
+pub struct Alone<P>(pub P);
+
+impl<P: Primitive> Primitive for Alone<P> {
+    type Scalar = P::Scalar;
+
+    fn aabb(&self) -> Aabb<P::Scalar> {
+        self.0.aabb()
+    }
+
+    fn centroid(&self) -> [P::Scalar; 3] {
+        self.0.centroid()
+    }
+}
+
+impl<P: Intersect> Intersect for Alone<P> {
+    type Payload = P::Payload;
+    type Leaf = OneByOne;
+
+    fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, P::Payload)> {
+        self.0.intersect(ray)
+    }
+}

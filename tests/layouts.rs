@@ -1,0 +1,267 @@
+//! Every layout, on every instruction set, answers as the naive loop does, bit for bit: for soups, rays, heuristics and
+//! leaf sizes of every kind that is hard, in every mode, for primitives of one's own and for pointers to unlike ones.
+
+mod common {
+    pub mod alone;
+    pub mod answers;
+    pub mod at_hits;
+    pub mod heuristics;
+    pub mod hostile;
+    pub mod modes;
+    pub mod naive;
+    pub mod soups;
+}
+mod generate {
+    pub mod primitives;
+}
+
+use bvhkit::heuristic::Heuristic;
+use bvhkit::{
+    Barycentrics, Builder, Bvh, Fast, InstructionSet, Intersect, OnInvalid, OneByOne, Precise, Quality, Ray,
+    Scalar, Traverse, Tree, Triangle, Watertight, WatertightLeaf, WideTree, reference,
+};
+use common::alone::Alone;
+use common::answers::{Key, Payload, key};
+use common::at_hits::at_hits;
+use common::heuristics;
+use common::modes::Mode;
+use common::naive::Naive;
+use common::soups::{self, KINDS};
+use generate::primitives::{Corners, boxes, discs, spheres, triangles};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use std::fmt;
+
+/// As many as a leaf of the wide layouts has room for, one more, and far more.
+const LEAF_SIZES: [usize; 6] = [1, 4, 8, 9, 100, usize::MAX];
+
+/// By which coordinates are multiplied.
+const SCALES: [f64; 5] = [1.0, 1e-30, 1e-15, 1e15, 1e30];
+
+/// Triangles at the most, by turns.
+const SIZES: [usize; 4] = [8, 24, 100, 400];
+
+/// Scenes of each kind: each scale with each leaf size.
+const SCENES: usize = SCALES.len() * LEAF_SIZES.len();
+
+/// Builds with some options, compares, and tells how many layouts were.
+type Compare<P> = for<'a> fn(
+    &Naive<'a, P>,
+    Builder<&'a P, &dyn Heuristic<<P as bvhkit::Primitive>::Scalar>>,
+    fmt::Arguments<'_>,
+) -> usize;
+
+/// The layouts that nobody needs two primitives for to find what is wrong with them.
+fn in_every_layout<'a, P: Intersect<Payload: Payload>>(
+    naive: &Naive<'a, P>,
+    builder: Builder<&'a P, &dyn Heuristic<P::Scalar>>,
+    options: fmt::Arguments<'_>,
+) -> usize {
+    naive.assert_same(builder.clone().layout::<Tree<P::Scalar>>(), options);
+    naive.assert_same(builder.clone().layout::<WideTree<P::Scalar, 4>>(), options);
+    naive.assert_same(builder.clone().layout::<WideTree<P::Scalar, 8>>(), options);
+    naive.assert_same(builder, options);
+    4
+}
+
+/// The layout that is taken by default.
+fn in_wide_trees<'a, P: Intersect<Payload: Payload>>(
+    naive: &Naive<'a, P>,
+    builder: Builder<&'a P, &dyn Heuristic<P::Scalar>>,
+    options: fmt::Arguments<'_>,
+) -> usize {
+    naive.assert_same(builder, options);
+    1
+}
+
+/// What was compared, so that a test can tell that it has tested something.
+struct Compared<P: Intersect> {
+    compare: Compare<P>,
+    answers: usize,
+    hits: usize,
+}
+
+impl<P: Intersect<Payload: Payload>> Compared<P> {
+    fn by(compare: Compare<P>) -> Self {
+        Self { compare, answers: 0, hits: 0 }
+    }
+
+    /// Layouts on every instruction set, over trees of half of the heuristics, with leaf sizes by turns.
+    fn add(&mut self, primitives: &[P], rays: &[Ray<P::Scalar>], turn: usize) {
+        let naive = Naive::new(primitives, rays);
+        self.hits += naive.hits();
+        for (i, (name, heuristic)) in heuristics::all().iter().enumerate().skip(turn % 2).step_by(2) {
+            let max_leaf_size = LEAF_SIZES[(turn / 2 + i) % LEAF_SIZES.len()];
+            for set in InstructionSet::available() {
+                let builder = Bvh::builder().heuristic(&**heuristic as &dyn Heuristic<P::Scalar>);
+                let builder = builder.max_leaf_size(max_leaf_size).instruction_set(set);
+                let options = format_args!("{name}, leaves of {max_leaf_size}");
+                // Each closest hit, any hit, all hits.
+                self.answers += 3 * rays.len() * (self.compare)(&naive, builder, options);
+            }
+        }
+    }
+
+    fn tell(&self) {
+        let Self { answers, hits, .. } = self;
+        eprintln!("{}: {answers} answers compared", std::any::type_name::<P>());
+        assert!(*hits > 1000, "{hits} hits");
+    }
+}
+
+/// A ray, on the same line from before its origin on, and with zeros: of the other sign, and one more.
+fn variants<S: Scalar>(ray: Ray<S>, rng: &mut Pcg64Mcg) -> [Ray<S>; 5] {
+    let flipped = ray.direction.map(|x| if x == S::ZERO { -x } else { x });
+    let mut flat = ray.direction;
+    flat[rng.random_range(0..3)] = if rng.random() { S::ZERO } else { -S::ZERO };
+    [
+        ray,
+        ray.with_interval(S::NEG_INFINITY, S::INFINITY),
+        ray.with_interval(-S::HALF, ray.t_max),
+        Ray { direction: flipped, ..ray },
+        Ray { direction: flat, ..ray },
+    ]
+}
+
+/// Over soups of all kinds and scales, as primitives of some kind, with rays of theirs.
+fn over_the_soups<S: Scalar, P: Intersect<Scalar = S, Payload: Payload>>(
+    primitives_of: impl Fn(&[Corners<S>]) -> Vec<P>,
+    ray: impl Fn(&[Triangle<S>], &[P], &mut Pcg64Mcg) -> Ray<S>,
+    compare: Compare<P>,
+) {
+    let scaled = |point: [S; 3], scale: f64| point.map(|x| x * S::from_f64(scale));
+    let mut compared = Compared::by(compare);
+    for (kind, turn) in (0..KINDS).flat_map(|kind| (0..SCENES).map(move |turn| (kind, turn))) {
+        let mut rng = Pcg64Mcg::seed_from_u64((kind * SCENES + turn) as u64);
+        let (scale, size) = (SCALES[turn % SCALES.len()], SIZES[turn % SIZES.len()]);
+        let size = rng.random_range(1..=size);
+        let soup = soups::soup::<S>(kind, size, &mut rng);
+        let soup: Vec<Corners<S>> = soup.iter().map(|t| [t.a, t.b, t.c].map(|p| scaled(p, scale))).collect();
+        let (bare, primitives) = (triangles(&soup), primitives_of(&soup));
+        let rays = (0..2).flat_map(|_| {
+            let ray = ray(&bare, &primitives, &mut rng);
+            variants(ray, &mut rng)
+        });
+        let rays = at_hits(&primitives, rays.collect());
+        compared.add(&primitives, &rays, turn);
+        if kind == 0 {
+            compared.add(&[], &rays, turn);
+        }
+    }
+    compared.tell();
+}
+
+fn all_answers<M: Mode>(compare: Compare<M>) {
+    over_the_soups(
+        |soup| triangles(soup).into_iter().map(M::of).collect(),
+        |soup, _, rng| soups::ray(soup, rng),
+        compare,
+    );
+}
+
+/// With ties in every box and every leaf.
+fn equal_triangles<M: Mode>(compare: Compare<M>) {
+    let point = |x: [f64; 3]| x.map(M::Number::from_f64);
+    let (a, b, c) = (point([0.0, 0.0, 3.0]), point([1.0, 0.0, 3.0]), point([0.0, 1.0, 3.5]));
+    let triangles = [M::of(Triangle::new(a, b, c)); 3000];
+    // Inside, at a corner, beside.
+    let targets = [[0.25, 0.25, 0.0], [0.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
+    let rays = targets.map(|target| Ray::new(point(target), point([0.0, -0.0, 1.0])));
+    let rays = at_hits(&triangles, rays.into());
+    let mut compared = Compared::by(compare);
+    (0..2 * LEAF_SIZES.len()).for_each(|turn| compared.add(&triangles, &rays, turn));
+    compared.tell();
+}
+
+/// More than it takes for rays to be traced in turns, invalid ones among them.
+fn lists_of_rays<M: Mode>() {
+    fn assert_same<'a, M: Mode, L: Traverse<&'a M>>(
+        builder: Builder<&'a M, Quality, L>,
+        triangles: &'a [M],
+        rays: &[Ray<M::Number>],
+        expected: &[Option<Key>],
+    ) {
+        let bvh = builder.on_invalid(OnInvalid::Skip).build(triangles).unwrap();
+        let (mut closest, mut any) = (vec![None; rays.len()], vec![false; rays.len()]);
+        bvh.closest_hits(rays, &mut closest);
+        bvh.any_hits(rays, &mut any);
+        for (i, ray) in rays.iter().enumerate() {
+            let (layout, set) = (std::any::type_name::<L>(), bvh.instruction_set());
+            let answers = (closest[i].map(key), any[i]);
+            assert_eq!(answers, (expected[i], expected[i].is_some()), "{layout}, {set}, {ray:?}");
+        }
+    }
+    for kind in 0..KINDS {
+        let mut rng = Pcg64Mcg::seed_from_u64(kind as u64);
+        let soup = soups::soup::<M::Number>(kind, 300, &mut rng);
+        let triangles: Vec<_> = soup.iter().copied().map(M::of).collect();
+        let mut rays = vec![Ray::new(soup[0].a, [M::Number::ZERO; 3])];
+        for _ in 0..320 {
+            let ray = soups::ray(&soup, &mut rng);
+            rays.extend(variants(ray, &mut rng));
+        }
+        let expected: Vec<_> =
+            rays.iter().map(|ray| reference::closest_hit(&triangles, ray).map(key)).collect();
+        for set in InstructionSet::available() {
+            let builder = Bvh::builder().instruction_set(set);
+            assert_same(builder.clone(), &triangles, &rays, &expected);
+            assert_same(builder.layout::<Tree<M::Number>>(), &triangles, &rays, &expected);
+        }
+    }
+}
+
+#[test]
+fn watertight_triangles() {
+    all_answers::<Watertight<Triangle>>(in_every_layout);
+    equal_triangles::<Watertight<Triangle>>(in_every_layout);
+    lists_of_rays::<Watertight<Triangle>>();
+}
+
+#[test]
+fn watertight_triangles_in_f64() {
+    all_answers::<Watertight<Triangle<f64>>>(in_every_layout);
+    equal_triangles::<Watertight<Triangle<f64>>>(in_every_layout);
+    lists_of_rays::<Watertight<Triangle<f64>>>();
+}
+
+#[test]
+fn fast_and_precise_triangles() {
+    all_answers::<Fast<Triangle>>(in_wide_trees);
+    all_answers::<Precise<Triangle>>(in_wide_trees);
+}
+
+#[test]
+fn solids() {
+    over_the_soups(spheres::<f32>, |soup, _, rng| soups::ray(soup, rng), in_every_layout);
+    over_the_soups(spheres::<f64>, |soup, _, rng| soups::ray(soup, rng), in_wide_trees);
+    over_the_soups(boxes::<f64>, |soup, _, rng| soups::ray(soup, rng), in_wide_trees);
+}
+
+/// A primitive of one's own that keeps no rule but the pure function.
+#[test]
+fn sloppy_discs() {
+    over_the_soups(discs::<f32>, |soup, _, rng| soups::ray(soup, rng), in_every_layout);
+}
+
+/// Packed side by side or asked one by one, whatever is behind the pointers.
+#[test]
+fn pointers() {
+    type Alike = dyn Intersect<Scalar = f32, Payload = Barycentrics, Leaf = WatertightLeaf>;
+    type Unlike = dyn Intersect<Scalar = f32, Payload = (), Leaf = OneByOne>;
+    over_the_soups(
+        |soup| triangles(soup).into_iter().map(|triangle| Box::new(triangle) as Box<Alike>).collect(),
+        |soup, _, rng| soups::ray(soup, rng),
+        in_wide_trees,
+    );
+    over_the_soups(
+        |soup| {
+            let by_turns = |(i, (sphere, cuboid))| match i % 2 {
+                0 => Box::new(Alone(sphere)) as Box<Unlike>,
+                _ => Box::new(cuboid),
+            };
+            spheres(soup).into_iter().zip(boxes(soup)).enumerate().map(by_turns).collect()
+        },
+        |soup, _, rng| soups::ray(soup, rng),
+        in_wide_trees,
+    );
+}
