@@ -16,7 +16,7 @@ use core::marker::PhantomData;
 /// (`Bvh<&Sphere>`).
 ///
 /// Every index that goes in or comes out is the primitive's place in the input. Answers do not
-/// depend on the heuristic, the leaf size or the number of threads: they are, bit for bit, those of
+/// depend on the heuristic, the leaf size, the layout, the instruction set or the number of threads: they are, bit for bit, those of
 /// the [`reference`](crate::reference) loop over all primitives.
 ///
 /// ```

@@ -21,7 +21,7 @@
 //! # The way through
 //!
 //! ```text
-//! primitives -> boxes and centroids -> driver, asking a heuristic -> tree -> queries -> hits
+//! primitives -> boxes and centroids -> driver, asking a heuristic -> tree -> layout -> queries -> hits
 //! ```
 //!
 //! - What a tree can hold: [`Primitive`], one method; to be hit by rays, [`Intersect`], one more.
@@ -31,8 +31,10 @@
 //! - How it is built: [`Bvh::build`] for the good default, [`Bvh::builder`] for a [`Quality`], one
 //!   of the [`heuristic`]s or your own, the leaf size, threads, and what to do with invalid
 //!   primitives.
+//! - How it lies in memory, by type: [`WideTree`] for speed, what [`Bvh`] has by itself, or the binary [`Tree`]; and
+//!   what it is computed with, [`InstructionSet`], the best that the processor has unless told.
 //! - What it answers: [`Bvh::closest_hit`], [`Bvh::any_hit`], [`Bvh::hits`], each with
-//!   [`Counters`] on request.
+//!   [`Counters`] on request; [`Bvh::closest_hits`] and [`Bvh::any_hits`] for many rays.
 //! - What to test it, or your own, against: [`reference`](mod@reference); with the feature `exact`,
 //!   the answer of exact arithmetic too.
 //! - What it looks like: [`Bvh::report`], [`Bvh::check`].
@@ -41,7 +43,7 @@
 //!
 //! - **The naive answer.** The hit is that of the loop over all primitives with the same primitive
 //!   test: same t bits, same index, the lowest index where several have the same t. It does not
-//!   depend on heuristic, leaf size or number of threads. How: [`Intersect::intersect`].
+//!   depend on heuristic, leaf size, layout, instruction set or number of threads. How: [`Intersect::intersect`].
 //! - **No leaks.** A ray from inside a closed mesh, by more than rounding, hits it, at edges and corners too,
 //!   unless its triangles are [`Fast`]: see [`Watertight`].
 //! - **No panics on data.** NaN, infinities, empty input, degenerate primitives, absurd options: each
@@ -57,6 +59,7 @@
 //! - `rayon` (default): parallel builds; the tree is the same with and without.
 //! - `std` (default): the standard library's square root. Without it the crate is `no_std` + alloc.
 //! - `exact`: the exact oracle, `reference::exact`.
+//! - `portable`: [`InstructionSet::Portable`] also where the target has vectors, for tests.
 #![no_std]
 #![deny(missing_docs)]
 

@@ -292,7 +292,7 @@ impl<S: Scalar, const N: usize> WideTree<S, N> {
         indices[..slots.len()].copy_from_slice(&plan.tree.indices[slots]);
         for (lane, &index) in indices.iter().enumerate() {
             if index == NOBODY {
-                values.fill(S::ZERO / S::ZERO);
+                values.fill(S::from_f64(f64::NAN));
             } else {
                 contents.put(index, values);
             }

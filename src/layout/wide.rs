@@ -96,10 +96,15 @@ impl<S: Scalar, const N: usize> WideNode<S, N> {
     }
 }
 
-/// A tree of nodes with up to `N` children.
+/// The layout for speed: a tree of nodes with up to `N` children, 4, 8 or 16, whose boxes are tested all at once, and of
+/// leaves of up to 8 primitives, side by side if their type has a [`Leaf`](crate::Leaf) of its own.
+///
+/// At most 16 GiB. On 279,163 triangles of sponza it takes 63 bytes a triangle.
+///
+/// 16 is the best that was found, with AVX-512 and with AVX2: see the README.
 ///
 /// Every reference that can be reached from the root refers to a node or a leaf inside of the blocks: only
-/// [`Collapse`](super::collapse) writes any, for blocks that it has allocated.
+/// `layout::collapse` writes any, for blocks that it has allocated.
 #[derive(Clone)]
 pub struct WideTree<S = f32, const N: usize = 16> {
     pub(super) blocks: Blocks,

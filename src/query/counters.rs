@@ -7,7 +7,7 @@ pub trait Recorder {
     /// A valid ray sets out.
     #[inline(always)]
     fn ray(&mut self) {}
-    /// An inner node is visited: the boxes of its two children are tested.
+    /// An inner node is visited: the boxes of its children are tested.
     #[inline(always)]
     fn node(&mut self) {}
     /// A leaf is visited.

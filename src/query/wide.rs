@@ -74,7 +74,8 @@ pub(super) fn first<S: Scalar, const N: usize>(
         // A copy, and no closure: a reference would keep the prepared ray in memory on every other way.
         let slabs = ray.slabs;
         let entry = slabs.entry(&tree.aabb())?;
-        if !(entry <= limit) {
+        let is_met = entry <= limit;
+        if !is_met {
             return None;
         }
     }

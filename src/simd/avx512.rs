@@ -123,16 +123,16 @@ fn sort16(mut v: __m512i) -> __m512i {
         let mut distance = size;
         while distance > 0 {
             let (mut order, mut larger) = ([0i32; 16], 0u16);
-            for lane in 0..16usize {
-                // Batcher's rule: `lane` is the lower of a pair `distance` apart.
-                let is_lower = |lane: usize| {
-                    let start = distance % size;
-                    lane >= start
-                        && lane + distance < 16
-                        && (lane - start) / distance % 2 == 0
-                        && lane / (2 * size) == (lane + distance) / (2 * size)
-                };
-                order[lane] = if is_lower(lane) {
+            // Batcher's rule: whether a lane is the lower of a pair that is `distance` apart.
+            let is_lower = |lane: usize| {
+                let start = distance % size;
+                lane >= start
+                    && lane + distance < 16
+                    && ((lane - start) / distance).is_multiple_of(2)
+                    && lane / (2 * size) == (lane + distance) / (2 * size)
+            };
+            for (lane, partner) in order.iter_mut().enumerate() {
+                *partner = if is_lower(lane) {
                     (lane + distance) as i32
                 } else if lane >= distance && is_lower(lane - distance) {
                     larger |= 1 << lane;
@@ -150,4 +150,38 @@ fn sort16(mut v: __m512i) -> __m512i {
         size *= 2;
     }
     v
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::mem::MaybeUninit;
+    use fearless_simd::prelude::*;
+    use fearless_simd::{Level, f32x16, u32x16};
+
+    /// Distances with ties and zeros, all sets of children of two and more.
+    #[test]
+    fn children_are_sorted_farthest_first_and_none_is_lost() {
+        let Some(isa) = Level::new().as_avx512() else { return };
+        let distances: [f32; 16] = core::array::from_fn(|lane| ((lane * 7 + 3) % 11) as f32 * 0.75);
+        let near = f32x16::load_array(isa, distances);
+        let children = u32x16::load_array(isa, core::array::from_fn(|lane| 1000 + lane as u32));
+        for met in (3..=u16::MAX).filter(|met| met.count_ones() > 1) {
+            let mut references = [MaybeUninit::new(0u32); 16];
+            let mut entries = [MaybeUninit::new(0.0f32); 16];
+            let nearest = sort(isa, near.into(), met, children.into(), &mut references, &mut entries);
+            // SAFETY: initialised above.
+            let (references, entries) =
+                unsafe { (references.map(|x| x.assume_init()), entries.map(|x| x.assume_init())) };
+            let count = met.count_ones() as usize;
+            let lanes = references[..count].iter().map(|child| child - 1000);
+            assert_eq!(lanes.clone().fold(0, |set, lane| set | 1 << lane), met, "{met:b}");
+            assert_eq!(lanes.clone().next_back(), Some(nearest), "{met:b}");
+            assert!(entries[..count].is_sorted_by(|a, b| a >= b), "{met:b}: {entries:?}");
+            for (lane, &entry) in lanes.zip(&entries) {
+                let distance = distances[lane as usize];
+                assert!(entry <= distance && entry >= distance * (1.0 - 16.0 * f32::EPSILON), "{met:b}");
+            }
+        }
+    }
 }

@@ -159,12 +159,12 @@ impl Backend {
     /// Runs the kernel's copy for this instruction set.
     #[inline(always)]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
-        // Other targets have but one.
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        if !K::IS_WIDE
-            && let Some(isa) = Level::baseline().as_sse2()
-        {
-            return kernel.run(isa);
+        if !K::IS_WIDE {
+            // Other targets have but one.
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            if let Some(isa) = Level::baseline().as_sse2() {
+                return kernel.run(isa);
+            }
         }
         match self {
             #[cfg(any(

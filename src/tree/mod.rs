@@ -71,7 +71,7 @@ impl<S: Scalar> Node<S> {
 /// A binary bounding volume hierarchy over primitives known by their index alone.
 ///
 /// Two trees are equal if they have the same nodes in the same places: what a build promises for
-/// any number of threads. A [`Bvh`](crate::Bvh) owns one; see [`Bvh::tree`](crate::Bvh::tree).
+/// any number of threads. As a layout of [`Bvh`](crate::Bvh) it is traced as it was built: `Bvh<P, Tree>`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tree<S = f32> {
     pub(crate) nodes: Vec<Node<S>>,
