@@ -9,7 +9,8 @@ use crate::simd::Lanes;
 /// The nearest of two children or more, which are entered at `near` in the lanes `met`; the others are pushed, the
 /// farthest first.
 ///
-/// Two are most of what there is beyond one, and are compared as scalars.
+/// In registers where the lanes can sort, which the entry distances of a ray that looks behind its origin do not suit; else
+/// one by one.
 #[inline(always)]
 pub(super) fn nearest<S: Scalar, L: Lanes<S>, const N: usize>(
     node: &WideNode<S, N>,

@@ -4,8 +4,7 @@
 //! step: an inner node tests the boxes of all its children at once
 //!         none met   pop
 //!         one met    it is next
-//!         two met    the nearer is next, the other goes on the stack with its entry distance
-//!         more met   the nearest is next, the others go on the stack by distance, the nearest on top;
+//!         more met   the nearest is next, the others go on the stack by entry distance, the nearest on top;
 //!                    if any hit will do, they go there as they lie in the node, and the last is next
 //!       a leaf tests its primitives, all at once if they are packed, then pop
 //! pop:  entries beyond the visitor's limit, which may have shrunk since, are dropped

@@ -95,8 +95,8 @@ impl Leaf<f32, Barycentrics> for PreciseLeaf {
         is_ordinary(ray)
     }
 
-    /// A difference p - q of products of places in the frame, each of them a difference of products, has a rounding
-    /// error of less than 4 epsilon times the sum of what its parts would be if all signs were plus.
+    /// A weight is a difference of two products of places in the frame, each of them off by less than 2 epsilon of what
+    /// it would be if all signs were plus: so the weight is, by less than 16 epsilon of the largest such product.
     #[inline(always)]
     fn candidates<L: Lanes<f32>>(operands: &Operands<'_, f32, L>, ray: &PreparedRay, _: f32) -> L::Mask {
         let Sights { x, y, z, weights: [a, b, c], .. } = Sights::new(operands, &ray.shear);
