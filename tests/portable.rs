@@ -4,8 +4,6 @@
 
 mod common {
     pub mod answers;
-    pub mod heuristics;
-    pub mod hostile;
     pub mod naive;
     pub mod soups;
 }
