@@ -5,8 +5,9 @@ use crate::build::{Flaw, PrimRef, ThreadPoolError, build_tree, in_pool};
 use crate::bvh::Bvh;
 use crate::geometry::Scalar;
 use crate::layout::{Layout, WideTree};
-use crate::primitive::{Intersect, Primitive};
+use crate::primitive::Primitive;
 use crate::simd::{Backend, InstructionSet};
+use crate::tree::Tree;
 use alloc::vec::Vec;
 use core::fmt;
 use core::marker::PhantomData;
@@ -148,7 +149,7 @@ impl<P: Primitive, H: Clone, L> Clone for Builder<P, H, L> {
     }
 }
 
-impl<P: Intersect> Builder<P, Quality> {
+impl<P: Primitive, L> Builder<P, Quality, L> {
     pub(crate) fn new() -> Self {
         Self {
             heuristic: Quality::default(),
@@ -158,6 +159,29 @@ impl<P: Intersect> Builder<P, Quality> {
             instruction_set: None,
             result: PhantomData,
         }
+    }
+}
+
+impl<S: Scalar> Tree<S> {
+    /// Options for a binary hierarchy over anything with a box, rays or no rays.
+    ///
+    /// ```
+    /// use bvhkit::{Aabb, Primitive, Tree};
+    ///
+    /// struct Region(Aabb);
+    /// impl Primitive for Region {
+    ///     type Scalar = f32;
+    ///     fn aabb(&self) -> Aabb {
+    ///         self.0
+    ///     }
+    /// }
+    ///
+    /// let bvh = Tree::builder().build([Region(Aabb::new([0.0; 3], [1.0; 3]))])?;
+    /// assert_eq!(bvh.aabb(), Aabb::new([0.0; 3], [1.0; 3]));
+    /// # Ok::<(), bvhkit::BuildError>(())
+    /// ```
+    pub fn builder<P: Primitive<Scalar = S>>() -> Builder<P, Quality, Self> {
+        Builder::new()
     }
 }
 
@@ -196,9 +220,10 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         Self { instruction_set: Some(instruction_set), ..self }
     }
 
-    /// The largest number of primitives in a leaf, 4 unless set; surface area heuristics make
+    /// The largest number of primitives in a leaf of the binary tree, 4 unless set; surface area heuristics make
     /// smaller ones where that pays. Any number from 1 on; above the number of primitives it means
-    /// that number.
+    /// that number. A [`WideTree`] joins leaves where that is cheaper, and divides larger ones: its own hold up to
+    /// [`LEAF_WIDTH`](crate::LEAF_WIDTH), whatever is set here.
     #[must_use]
     pub fn max_leaf_size(self, max_leaf_size: usize) -> Self {
         Self { max_leaf_size, ..self }
