@@ -91,8 +91,8 @@ pub use geometry::{Aabb, Axis, PreparedRay, Ray, RayError, Scalar};
 pub use layout::{Layout, WideTree};
 pub use primitive::{
     Barycentrics, Corners, Fast, FastLeaf, Intersect, LEAF_WIDTH, Leaf, MeshError, MeshTriangle, OneByOne,
-    Operands, Precise, PreciseLeaf, Primitive, Sphere, SphereLeaf, SurfacePoint, Triangle, TriangleMesh,
-    Watertight, WatertightLeaf,
+    Operands, Precise, PreciseLeaf, Primitive, Sphere, SphereLeaf, SurfacePoint, Triangle, TriangleLeaf,
+    TriangleMesh, Watertight, WatertightLeaf,
 };
 pub use query::{Counters, Hit, Hits, Recorder, Traverse};
 pub use simd::{InstructionSet, Lanes};

@@ -11,7 +11,7 @@ pub use sphere::{Sphere, SphereLeaf};
 pub use surface_point::SurfacePoint;
 pub use triangle::{
     Barycentrics, Corners, Fast, FastLeaf, MeshError, MeshTriangle, Precise, PreciseLeaf, Triangle,
-    TriangleMesh, Watertight, WatertightLeaf,
+    TriangleLeaf, TriangleMesh, Watertight, WatertightLeaf,
 };
 
 use crate::geometry::{Aabb, PreparedRay, Scalar};

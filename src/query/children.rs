@@ -2,8 +2,7 @@
 
 use super::pending::Pending;
 use crate::geometry::Scalar;
-use crate::layout::Reference;
-use crate::layout::WideNode;
+use crate::layout::{Reference, WideNode};
 use crate::simd::Lanes;
 
 /// The nearest of two children or more, which are entered at `near` in the lanes `met`; the others are pushed, the

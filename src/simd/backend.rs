@@ -175,32 +175,26 @@ impl Backend {
                     all(target_arch = "wasm32", target_feature = "simd128")
                 ))
             ))]
-            Self::Portable(isa) => kernel.run(isa),
+            Self::Portable(isa) => vectorized(isa, kernel),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Self::Sse2(isa) => isa.vectorize(
-                #[inline(always)]
-                || kernel.run(isa),
-            ),
+            Self::Sse2(isa) => vectorized(isa, kernel),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Self::Avx2(isa) => isa.vectorize(
-                #[inline(always)]
-                || kernel.run(isa),
-            ),
+            Self::Avx2(isa) => vectorized(isa, kernel),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Self::Avx512(isa) => isa.vectorize(
-                #[inline(always)]
-                || kernel.run(isa),
-            ),
+            Self::Avx512(isa) => vectorized(isa, kernel),
             #[cfg(target_arch = "aarch64")]
-            Self::Neon(isa) => isa.vectorize(
-                #[inline(always)]
-                || kernel.run(isa),
-            ),
+            Self::Neon(isa) => vectorized(isa, kernel),
             #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-            Self::Simd128(isa) => isa.vectorize(
-                #[inline(always)]
-                || kernel.run(isa),
-            ),
+            Self::Simd128(isa) => vectorized(isa, kernel),
         }
     }
+}
+
+/// Below one function that has the instructions switched on.
+#[inline(always)]
+fn vectorized<I: Simd, K: Kernel>(isa: I, kernel: K) -> K::Output {
+    isa.vectorize(
+        #[inline(always)]
+        || kernel.run(isa),
+    )
 }

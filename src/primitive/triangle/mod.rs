@@ -8,7 +8,7 @@ mod watertight;
 
 pub use mesh::{MeshError, MeshTriangle, TriangleMesh};
 pub use modes::{Fast, Precise, Watertight};
-pub use packed::{FastLeaf, PreciseLeaf, WatertightLeaf};
+pub use packed::{FastLeaf, PreciseLeaf, TriangleLeaf, WatertightLeaf};
 
 use super::{Intersect, Primitive, SurfacePoint};
 use crate::geometry::{Aabb, PreparedRay, Scalar};

@@ -9,14 +9,16 @@ use crate::simd::Lanes;
 use core::marker::PhantomData;
 
 /// The leaf of [`Fast`](super::Fast) triangles: nine coordinates each.
-#[derive(Clone, Copy, Debug)]
-pub struct FastLeaf;
+pub type FastLeaf = TriangleLeaf<false>;
 
 /// The leaf of [`Watertight`](super::Watertight) triangles: nine coordinates each.
+pub type WatertightLeaf = TriangleLeaf<true>;
+
+/// A leaf of triangles: [`FastLeaf`], or [`WatertightLeaf`], which looks twice where rounding leaves something open.
 #[derive(Clone, Copy, Debug)]
-pub struct WatertightLeaf;
+pub struct TriangleLeaf<const LOOKS_TWICE: bool>;
 
-impl<S: Scalar> Leaf<S, Barycentrics<S>> for FastLeaf {
+impl<S: Scalar, const LOOKS_TWICE: bool> Leaf<S, Barycentrics<S>> for TriangleLeaf<LOOKS_TWICE> {
     const OPERANDS: usize = 9;
     const SETTLES: bool = true;
 
@@ -36,41 +38,13 @@ impl<S: Scalar> Leaf<S, Barycentrics<S>> for FastLeaf {
         if L::bits(sights.inside) == 0 {
             return Found::to_be_asked(0, operands);
         }
-        sights.found(operands, ray, limit, sights.inside)
+        let sure = if LOOKS_TWICE { sights.settled(operands) } else { sights.inside };
+        sights.found(operands, ray, limit, sure)
     }
 
     #[inline(always)]
-    fn payload(details: [S; 3]) -> Option<Barycentrics<S>> {
-        Some(barycentrics(details))
-    }
-}
-
-impl<S: Scalar> Leaf<S, Barycentrics<S>> for WatertightLeaf {
-    const OPERANDS: usize = 9;
-    const SETTLES: bool = true;
-
-    #[inline(always)]
-    fn suits(ray: &PreparedRay<S>) -> bool {
-        is_ordinary(ray)
-    }
-
-    #[inline(always)]
-    fn candidates<L: Lanes<S>>(operands: &Operands<'_, S, L>, ray: &PreparedRay<S>, _: S) -> L::Mask {
-        Sights::new(operands, &ray.shear).inside
-    }
-
-    #[inline(always)]
-    fn test<L: Lanes<S>>(operands: &Operands<'_, S, L>, ray: &PreparedRay<S>, limit: S) -> Found<S, L> {
-        let sights = Sights::new(operands, &ray.shear);
-        if L::bits(sights.inside) == 0 {
-            return Found::to_be_asked(0, operands);
-        }
-        sights.found(operands, ray, limit, sights.settled(operands))
-    }
-
-    #[inline(always)]
-    fn payload(details: [S; 3]) -> Option<Barycentrics<S>> {
-        Some(barycentrics(details))
+    fn payload([b, c, area]: [S; 3]) -> Option<Barycentrics<S>> {
+        Some(Barycentrics { u: b / area, v: c / area })
     }
 }
 
@@ -112,16 +86,8 @@ impl Leaf<f32, Barycentrics> for PreciseLeaf {
     }
 }
 
-#[inline(always)]
-fn barycentrics<S: Scalar>([b, c, area]: [S; 3]) -> Barycentrics<S> {
-    Barycentrics { u: b / area, v: c / area }
-}
-
 /// [`Sight`](super::sheared::Sight) in lanes.
-struct Sights<S, L: Lanes<S>>
-where
-    S: Scalar,
-{
+struct Sights<S: Scalar, L: Lanes<S>> {
     /// The corners' places relative to the origin: unpermuted differences, on the frame's axes.
     x: [L; 3],
     y: [L; 3],
