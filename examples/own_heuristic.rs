@@ -11,8 +11,8 @@ impl Heuristic<f32> for Mean {
         if node.references.len() <= node.max_leaf_size {
             return Split::Leaf;
         }
-        let axis = node.centroids.longest_axis();
-        let sum: f32 = node.references.iter().map(|r| r.centroid[axis.index()]).sum();
+        let axis = node.centroids().longest_axis();
+        let sum: f32 = node.references.iter().map(|r| r.centroid()[axis.index()]).sum();
         Split::Plane { axis, position: sum / node.references.len() as f32 }
     }
 }

@@ -1,10 +1,11 @@
 //! The options of a build, and what may be wrong with its input.
 
 use crate::build::heuristic::{BinnedSah, BuildNode, Heuristic, Split};
-use crate::build::{Flaw, PrimRef, ThreadPoolError, build_tree, in_pool};
+use crate::build::{Flaw, PrimRef, Rules, build_tree};
 use crate::bvh::Bvh;
 use crate::geometry::Scalar;
 use crate::layout::{Layout, WideTree};
+use crate::parallel::{ThreadPoolError, in_pool};
 use crate::primitive::Primitive;
 use crate::simd::{Backend, InstructionSet};
 use crate::tree::Tree;
@@ -41,8 +42,7 @@ impl<S: Scalar> Heuristic<S> for Quality {
     }
 }
 
-/// What to do with a primitive whose box or centroid has a NaN or an infinity, or whose box has a
-/// minimum above its maximum.
+/// What to do with a primitive whose box has a NaN, an infinity, or a minimum above its maximum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum OnInvalid {
     /// Fail with [`BuildError::InvalidPrimitive`], which names the first.
@@ -57,8 +57,7 @@ pub enum OnInvalid {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// A primitive has a box or a centroid that is no place in space, and
-    /// [`OnInvalid::Reject`] is in force.
+    /// A primitive has a box that is no place in space, and [`OnInvalid::Reject`] is in force.
     InvalidPrimitive {
         /// Its index in the input.
         index: usize,
@@ -89,7 +88,6 @@ impl fmt::Display for BuildError {
                     Flaw::NanBox => "a bounding box with a NaN",
                     Flaw::InfiniteBox => "a bounding box with an infinite bound",
                     Flaw::InvertedBox => "a bounding box whose minimum is above its maximum",
-                    Flaw::Centroid => "a centroid with a NaN or an infinity",
                 };
                 write!(f, "primitive {index} has {what}: repair it, or build with OnInvalid::Skip")
             }
@@ -136,7 +134,7 @@ impl core::error::Error for BuildError {}
 #[derive(Debug)]
 pub struct Builder<P: Primitive, H = Quality, L = WideTree<<P as Primitive>::Scalar>> {
     heuristic: H,
-    max_leaf_size: usize,
+    max_leaf_size: Option<usize>,
     threads: Option<usize>,
     on_invalid: OnInvalid,
     instruction_set: Option<InstructionSet>,
@@ -153,7 +151,7 @@ impl<P: Primitive, L> Builder<P, Quality, L> {
     pub(crate) fn new() -> Self {
         Self {
             heuristic: Quality::default(),
-            max_leaf_size: 4,
+            max_leaf_size: None,
             threads: None,
             on_invalid: OnInvalid::default(),
             instruction_set: None,
@@ -220,13 +218,13 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         Self { instruction_set: Some(instruction_set), ..self }
     }
 
-    /// The largest number of primitives in a leaf of the binary tree, 4 unless set; surface area heuristics make
-    /// smaller ones where that pays. Any number from 1 on; above the number of primitives it means
-    /// that number. A [`WideTree`] joins leaves where that is cheaper, and divides larger ones: its own hold up to
-    /// [`LEAF_WIDTH`](crate::LEAF_WIDTH), whatever is set here.
+    /// The largest number of primitives in a leaf of the binary tree: unless set, [`LEAF_WIDTH`](crate::LEAF_WIDTH), 8,
+    /// where the layout tests so many at once, else 4; surface area heuristics make smaller ones where that pays. Any
+    /// number from 1 on; above the number of primitives it means that number. A [`WideTree`] joins leaves where that is
+    /// cheaper, and divides larger ones: its own hold up to `LEAF_WIDTH`, whatever is set here.
     #[must_use]
     pub fn max_leaf_size(self, max_leaf_size: usize) -> Self {
-        Self { max_leaf_size, ..self }
+        Self { max_leaf_size: Some(max_leaf_size), ..self }
     }
 
     /// Builds with a pool of `threads` threads that is started for this build, 0 meaning one for each
@@ -254,7 +252,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// # Errors
     /// [`BuildError`], whose messages say what is wrong, where, and what to do.
     pub fn build(self, primitives: impl IntoIterator<Item = P>) -> Result<Bvh<P, L>, BuildError> {
-        if self.max_leaf_size == 0 {
+        if self.max_leaf_size == Some(0) {
             return Err(BuildError::ZeroLeafSize);
         }
         let backend = match self.instruction_set {
@@ -262,19 +260,26 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
             None => Backend::best(),
         };
         let primitives = collect(primitives.into_iter())?;
-        let References { mut valid, skipped } = self.references(&primitives)?;
-        let Self { heuristic, max_leaf_size, threads, .. } = &self;
-        let tree = in_pool(*threads, || build_tree(&mut valid, heuristic, *max_leaf_size))
-            .map_err(BuildError::ThreadPool)?;
-        drop(valid);
-        let layout = L::lay_out(tree, &primitives).ok_or(BuildError::TooLarge)?;
+        let (layout, skipped) =
+            in_pool(self.threads, || self.lay_out(&primitives)).map_err(BuildError::ThreadPool)??;
         Ok(Bvh::from_parts(layout, backend, primitives, skipped))
+    }
+
+    /// The layout, and the indices of skipped primitives.
+    fn lay_out(&self, primitives: &[P]) -> Result<(L, Vec<u32>), BuildError> {
+        let References { mut valid, skipped } = self.references(primitives)?;
+        let block_size = L::BLOCK_SIZE;
+        let max_leaf_size = self.max_leaf_size.unwrap_or(block_size.max(4));
+        let tree = build_tree(&mut valid, &Rules { heuristic: &self.heuristic, max_leaf_size, block_size });
+        drop(valid);
+        let layout = L::lay_out(tree, primitives).ok_or(BuildError::TooLarge)?;
+        Ok((layout, skipped))
     }
 
     fn references(&self, primitives: &[P]) -> Result<References<P::Scalar>, BuildError> {
         let (mut valid, mut skipped) = (Vec::with_capacity(primitives.len()), Vec::new());
         for (index, primitive) in (0..).zip(primitives) {
-            let reference = PrimRef::new(primitive, index);
+            let reference = PrimRef::new(primitive.aabb(), index);
             match (reference.flaw(), self.on_invalid) {
                 (None, _) => valid.push(reference),
                 (Some(_), OnInvalid::Skip) => skipped.push(index),

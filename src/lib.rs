@@ -72,6 +72,7 @@ mod builder;
 mod bvh;
 mod geometry;
 mod layout;
+mod parallel;
 mod primitive;
 mod query;
 pub mod reference;
@@ -84,11 +85,12 @@ mod tree;
 struct Readme;
 
 pub use build::heuristic;
-pub use build::{Flaw, PrimRef, ThreadPoolError};
+pub use build::{Flaw, PrimRef};
 pub use builder::{BuildError, Builder, OnInvalid, Quality};
 pub use bvh::Bvh;
 pub use geometry::{Aabb, Axis, PreparedRay, Ray, RayError, Scalar};
 pub use layout::{Layout, WideTree};
+pub use parallel::ThreadPoolError;
 pub use primitive::{
     Barycentrics, Corners, Fast, FastLeaf, Intersect, LEAF_WIDTH, Leaf, MeshError, MeshTriangle, OneByOne,
     Operands, Precise, PreciseLeaf, Primitive, Sphere, SphereLeaf, SurfacePoint, Triangle, TriangleLeaf,

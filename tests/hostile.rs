@@ -44,9 +44,6 @@ impl Primitive for Asked<'_> {
         self.1.fetch_add(1, Ordering::Relaxed);
         self.0.aabb()
     }
-    fn centroid(&self) -> [f32; 3] {
-        self.0.centroid()
-    }
 }
 
 impl Intersect for Asked<'_> {

@@ -104,43 +104,6 @@ fn spheres_and_boxes() {
     );
 }
 
-/// A sphere that is sorted by a point of the test's choice.
-#[derive(Clone, Debug)]
-struct Sorted(Sphere, [f32; 3]);
-
-impl Primitive for Sorted {
-    type Scalar = f32;
-    fn aabb(&self) -> Aabb {
-        self.0.aabb()
-    }
-    fn centroid(&self) -> [f32; 3] {
-        self.1
-    }
-}
-
-impl Intersect for Sorted {
-    type Payload = ();
-    type Leaf = OneByOne;
-    fn intersect(&self, ray: &PreparedRay) -> Option<(f32, ())> {
-        self.0.intersect(ray)
-    }
-}
-
-#[test]
-fn a_centroid_that_is_no_point() {
-    let rays = aimed(&triangles::<f32>(&soup(20), |_, x| x));
-    let sphere = |[a, ..]: &[[f64; 3]; 3]| Sphere::new(a.map(|x| x as f32), 0.25);
-    // A centroid far from its box is odd, but no error.
-    let good: Vec<_> = soup(20).iter().map(|corners| Sorted(sphere(corners), [9.0, 0.0, 0.0])).collect();
-    assert!(assert_agreement(&good, &rays) > 100);
-    for bad in [f32::NAN, f32::INFINITY] {
-        let bad = Sorted(good[5].0, [0.0, bad, 0.0]);
-        let error = Bvh::build([bad.clone()]).unwrap_err();
-        assert_eq!(error, BuildError::InvalidPrimitive { index: 0, flaw: Flaw::Centroid });
-        assert_rejected_or_skipped(&good, &bad, Flaw::Centroid, &rays);
-    }
-}
-
 #[test]
 fn all_invalid_is_as_empty() {
     let spheres = [Sphere::new([f32::NAN; 3], 1.0); 5];

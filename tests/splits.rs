@@ -66,7 +66,7 @@ impl Heuristic<f32> for Checked {
         let all = references.iter().fold(Aabb::EMPTY, |all, reference| all.union(reference.aabb));
         assert!(references.len() >= 2);
         assert_eq!((node.aabb, node.max_leaf_size), (all, 3));
-        assert_eq!(node.centroids, Aabb::of_points(references.iter().map(|reference| reference.centroid)));
+        assert_eq!(node.centroids(), Aabb::of_points(references.iter().map(|r| r.aabb.center())));
         Hostile.split(node)
     }
 }

@@ -1,23 +1,32 @@
 //! One step of the build: a set of references becomes a leaf or two sets.
 
 use super::heuristic::{BuildNode, Heuristic, Split};
-use super::reference::{Extent, PrimRef};
-use crate::geometry::{Axis, Scalar};
+use super::reference::{PrimRef, bounds};
+use crate::geometry::{Aabb, Axis, Scalar};
 use crate::tree::MAX_DEPTH;
 
 /// What the driver needs to divide any node.
-pub(super) struct Rules<'h, H: ?Sized> {
+pub(crate) struct Rules<'h, H: ?Sized> {
     pub heuristic: &'h H,
     pub max_leaf_size: usize,
+    pub block_size: usize,
+}
+
+impl<H: ?Sized> Rules<'_, H> {
+    /// A node as heuristics see it.
+    fn node<'r, S>(&self, references: &'r [PrimRef<S>], aabb: Aabb<S>, depth: usize) -> BuildNode<'r, S> {
+        let Self { max_leaf_size, block_size, .. } = *self;
+        BuildNode { aabb, references, depth, max_leaf_size, block_size }
+    }
 }
 
 /// Two non-empty sides: the references before `middle`, and from it on.
 pub(super) struct Division<S> {
     pub middle: usize,
-    pub sides: [Extent<S>; 2],
+    pub sides: [Aabb<S>; 2],
 }
 
-/// Reorders `references` into the two sides of a split, or answers `None` for a leaf.
+/// Reorders `references`, whose box is `aabb`, into the two sides of a split, or answers `None` for a leaf.
 ///
 /// The depth bound is the invariant `depth + ceil(log2(n)) <= MAX_DEPTH` of every node. It holds at
 /// the root (at most 2^32 primitives, 32 <= 64); a proposed split is taken only if it holds for both
@@ -25,7 +34,7 @@ pub(super) struct Division<S> {
 /// has one binary digit less.
 pub(super) fn divide<S: Scalar, H: Heuristic<S> + ?Sized>(
     references: &mut [PrimRef<S>],
-    extent: &Extent<S>,
+    aabb: &Aabb<S>,
     depth: usize,
     rules: &Rules<'_, H>,
 ) -> Option<Division<S>> {
@@ -33,14 +42,7 @@ pub(super) fn divide<S: Scalar, H: Heuristic<S> + ?Sized>(
     if n < 2 {
         return None;
     }
-    let split = rules.heuristic.split(&BuildNode {
-        aabb: extent.aabb,
-        centroids: extent.centroids,
-        references,
-        depth,
-        max_leaf_size: rules.max_leaf_size,
-    });
-    let division = match split {
+    let middle = match rules.heuristic.split(&rules.node(references, *aabb, depth)) {
         Split::Leaf if n <= rules.max_leaf_size => return None,
         Split::Leaf => None,
         Split::Plane { axis, position } => Some(partition(references, axis, position)),
@@ -48,10 +50,15 @@ pub(super) fn divide<S: Scalar, H: Heuristic<S> + ?Sized>(
         Split::Count { .. } => None,
     };
     let fits = |n: usize| n > 0 && depth + 1 + ceil_log2(n) <= MAX_DEPTH;
-    Some(match division {
-        Some(division) if fits(division.middle) && fits(n - division.middle) => division,
-        _ => select(references, extent.centroids.longest_axis(), n / 2),
-    })
+    let middle = match middle {
+        Some(middle) if fits(middle) && fits(n - middle) => middle,
+        _ => {
+            let axis = rules.node(references, *aabb, depth).centroids().longest_axis();
+            select(references, axis, n / 2)
+        }
+    };
+    let (left, right) = references.split_at(middle);
+    Some(Division { middle, sides: [bounds(left), bounds(right)] })
 }
 
 /// The smallest k with 2^k >= n, for n > 0.
@@ -59,47 +66,39 @@ fn ceil_log2(n: usize) -> usize {
     n.next_power_of_two().trailing_zeros() as usize
 }
 
-/// Moves the references with a centroid below `position` to the front. A side may be empty.
-fn partition<S: Scalar>(references: &mut [PrimRef<S>], axis: Axis, position: S) -> Division<S> {
-    let axis = axis.index();
-    let (mut left, mut right) = (Extent::EMPTY, Extent::EMPTY);
-    let (mut middle, mut end) = (0, references.len());
-    while middle < end {
-        let reference = references[middle];
+/// Moves the references with a centroid below `position` to the front, and tells how many they are: any number.
+///
+/// Lomuto's scheme without a branch: what comes next changes places with the first on the right, and whether it stays
+/// there is added to the border. A branch would be mispredicted at every other reference.
+fn partition<S: Scalar>(references: &mut [PrimRef<S>], axis: Axis, position: S) -> usize {
+    let mut middle = 0;
+    for i in 0..references.len() {
         // False for NaN.
-        if reference.centroid[axis] < position {
-            left = left.grow(&reference);
-            middle += 1;
-        } else {
-            right = right.grow(&reference);
-            end -= 1;
-            references.swap(middle, end);
-        }
+        let is_left = references[i].middle(axis) < position;
+        references.swap(i, middle);
+        middle += usize::from(is_left);
     }
-    Division { middle, sides: [left, right] }
+    middle
 }
 
 /// Moves the `left` references with the smallest centroids to the front, equal ones by index.
-fn select<S: Scalar>(references: &mut [PrimRef<S>], axis: Axis, left: usize) -> Division<S> {
-    let axis = axis.index();
+fn select<S: Scalar>(references: &mut [PrimRef<S>], axis: Axis, left: usize) -> usize {
     references.select_nth_unstable_by(left, |a, b| {
-        a.centroid[axis].total_cmp(&b.centroid[axis]).then(a.index.cmp(&b.index))
+        a.middle(axis).total_cmp(&b.middle(axis)).then(a.index.cmp(&b.index))
     });
-    let (front, back) = references.split_at(left);
-    Division { middle: left, sides: [Extent::of(front), Extent::of(back)] }
+    left
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Aabb;
     use alloc::vec::Vec;
 
     fn references(n: u32, x: impl Fn(u32) -> f32) -> Vec<PrimRef> {
         (0..n)
             .map(|index| {
-                let centroid = [x(index), 0.0, 0.0];
-                PrimRef { aabb: Aabb::new(centroid, centroid), centroid, index }
+                let point = [x(index), 0.0, 0.0];
+                PrimRef::new(Aabb::new(point, point), index)
             })
             .collect()
     }
@@ -114,14 +113,11 @@ mod tests {
 
     fn middle(split: Split<f32>, n: u32, depth: usize) -> Option<usize> {
         let mut references = references(n, |i| (i * 7 % n) as f32);
-        let extent = Extent::of(&references);
-        let rules = Rules { heuristic: &Always(split), max_leaf_size: 4 };
-        divide(&mut references, &extent, depth, &rules).map(|division| {
-            for (side, part) in
-                [&references[..division.middle], &references[division.middle..]].iter().enumerate()
-            {
-                assert_eq!(Extent::of(part), division.sides[side]);
-            }
+        let aabb = bounds(&references);
+        let rules = Rules { heuristic: &Always(split), max_leaf_size: 4, block_size: 1 };
+        divide(&mut references, &aabb, depth, &rules).map(|division| {
+            let (left, right) = references.split_at(division.middle);
+            assert_eq!(division.sides, [bounds(left), bounds(right)]);
             division.middle
         })
     }

@@ -3,7 +3,7 @@
 //! 1. **Top.** All open nodes of a level are divided at once, on all threads; those with at most
 //!    [`TASK_SIZE`] references become tasks.
 //! 2. **Tasks.** Each builds its subtree into a list of its own, depth first.
-//! 3. **Join.** The lists are laid one after another behind the top's nodes.
+//! 3. **Join.** The top and the lists are laid out depth first.
 //!
 //! Every result has a place that follows from the data alone, never from the threads: the tree is
 //! the same on any number of them. Nothing recurses: neither stack depth nor time hang on a
@@ -11,9 +11,9 @@
 
 use super::divide::{Rules, divide};
 use super::heuristic::Heuristic;
-use super::parallel;
-use super::reference::{Extent, PrimRef};
-use crate::geometry::Scalar;
+use super::reference::{PrimRef, bounds};
+use crate::geometry::{Aabb, Scalar};
+use crate::parallel;
 use crate::tree::{Child, Node, Tree};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -27,7 +27,7 @@ struct OpenNode<'r, S> {
     references: &'r mut [PrimRef<S>],
     /// The slot of its first reference.
     first: usize,
-    extent: Extent<S>,
+    aabb: Aabb<S>,
     depth: usize,
     /// The inner node and the side that will refer to it; none for the root.
     parent: Option<(usize, usize)>,
@@ -42,16 +42,16 @@ impl<S: Scalar> OpenNode<'_, S> {
 impl<'r, S: Scalar> OpenNode<'r, S> {
     /// Divides the set in two, or answers `Err` with itself if it is to be a leaf.
     fn divide<H: Heuristic<S> + ?Sized>(self, rules: &Rules<'_, H>) -> Result<[Self; 2], Self> {
-        let Some(division) = divide(self.references, &self.extent, self.depth, rules) else {
+        let Some(division) = divide(self.references, &self.aabb, self.depth, rules) else {
             return Err(self);
         };
         let depth = self.depth + 1;
         let (left, right) = self.references.split_at_mut(division.middle);
-        let [left_extent, right_extent] = division.sides;
+        let [left_aabb, right_aabb] = division.sides;
         let first = self.first + division.middle;
         Ok([
-            OpenNode { references: left, first: self.first, extent: left_extent, depth, parent: None },
-            OpenNode { references: right, first, extent: right_extent, depth, parent: None },
+            OpenNode { references: left, first: self.first, aabb: left_aabb, depth, parent: None },
+            OpenNode { references: right, first, aabb: right_aabb, depth, parent: None },
         ])
     }
 }
@@ -78,7 +78,7 @@ impl<S: Scalar> Subtree<S> {
     fn push(&mut self, parent: Option<(usize, usize)>, sides: &mut [OpenNode<'_, S>; 2]) {
         let index = self.nodes.len();
         self.refer(parent, Child::inner(index));
-        self.nodes.push(Node::new([sides[0].extent.aabb, sides[1].extent.aabb]));
+        self.nodes.push(Node::new([sides[0].aabb, sides[1].aabb]));
         for (side, node) in sides.iter_mut().enumerate() {
             node.parent = Some((index, side));
         }
@@ -89,24 +89,22 @@ impl<S: Scalar> Subtree<S> {
 /// result are those of the references.
 pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
     references: &mut [PrimRef<S>],
-    heuristic: &H,
-    max_leaf_size: usize,
+    rules: &Rules<'_, H>,
 ) -> Tree<S> {
+    let aabb = bounds(references);
     if references.is_empty() {
-        let aabb = Extent::EMPTY.aabb;
         return Tree { nodes: Vec::new(), root: Child::default(), aabb, indices: Vec::new() };
     }
-    let rules = Rules { heuristic, max_leaf_size };
-    let extent = Extent::of(references);
-    let (mut tree, tasks) =
-        build_top(OpenNode { references, first: 0, extent, depth: 0, parent: None }, &rules);
-    let parents: Vec<_> = tasks.iter().map(|task| task.parent).collect();
-    let subtrees = parallel::map(tasks, |task| build_subtree(task, &rules));
-    for (parent, subtree) in parents.into_iter().zip(subtrees) {
-        join(&mut tree, parent, subtree);
-    }
+    let (top, tasks) = build_top(OpenNode { references, first: 0, aabb, depth: 0, parent: None }, rules);
+    let subtrees = parallel::map(tasks, |task| build_subtree(task, rules));
+    let Subtree { nodes, root } = join(top, &subtrees);
     let indices = references.iter().map(|reference| reference.index).collect();
-    Tree { nodes: tree.nodes, root: tree.root, aabb: extent.aabb, indices }
+    Tree { nodes, root, aabb, indices }
+}
+
+/// Instead of the number of a node, in the top: the number of a task, counted from the end.
+fn task_child(task: usize) -> Child {
+    Child::inner(u32::MAX as usize - task)
 }
 
 /// Divides all sets of more than [`TASK_SIZE`] references, and returns the others as tasks.
@@ -120,7 +118,10 @@ fn build_top<'r, S: Scalar, H: Heuristic<S> + ?Sized>(
     while !level.is_empty() {
         let (large, small): (Vec<_>, Vec<_>) =
             level.into_iter().partition(|node| node.references.len() > TASK_SIZE);
-        tasks.extend(small);
+        for task in small {
+            top.refer(task.parent, task_child(tasks.len()));
+            tasks.push(task);
+        }
         let parents: Vec<_> = large.iter().map(|node| node.parent).collect();
         level = Vec::new();
         for (parent, divided) in parents.into_iter().zip(parallel::map(large, |node| node.divide(rules))) {
@@ -158,12 +159,28 @@ fn build_subtree<S: Scalar, H: Heuristic<S> + ?Sized>(
     subtree
 }
 
-/// Appends a subtree's nodes and makes `parent` refer to them.
-fn join<S: Scalar>(tree: &mut Subtree<S>, parent: Option<(usize, usize)>, subtree: Subtree<S>) {
-    let base = tree.nodes.len();
-    let moved =
-        |child: Child| if child.is_leaf() { child } else { Child::inner(base + child.first as usize) };
-    tree.refer(parent, moved(subtree.root));
-    tree.nodes
-        .extend(subtree.nodes.into_iter().map(|node| Node { children: node.children.map(moved), ..node }));
+/// The top and the subtrees of its tasks as one tree, a left child the node after its parent everywhere.
+fn join<S: Scalar>(top: Subtree<S>, subtrees: &[Subtree<S>]) -> Subtree<S> {
+    let count = subtrees.iter().fold(top.nodes.len(), |count, subtree| count + subtree.nodes.len());
+    let mut joined = Subtree::with_capacity(count);
+    let mut open = vec![(None, top.root)];
+    while let Some((parent, child)) = open.pop() {
+        let base = joined.nodes.len();
+        let moved = |child: Child| {
+            if child.is_leaf() { child } else { Child::inner(base + child.first as usize) }
+        };
+        if child.is_leaf() {
+            joined.refer(parent, child);
+        } else if let Some(node) = top.nodes.get(child.first as usize) {
+            joined.refer(parent, Child::inner(base));
+            joined.nodes.push(*node);
+            open.extend([1, 0].map(|side| (Some((base, side)), node.children[side])));
+        } else {
+            let subtree = &subtrees[(u32::MAX - child.first) as usize];
+            joined.refer(parent, moved(subtree.root));
+            let nodes = subtree.nodes.iter();
+            joined.nodes.extend(nodes.map(|node| Node { children: node.children.map(moved), ..*node }));
+        }
+    }
+    joined
 }

@@ -10,10 +10,8 @@
 mod divide;
 mod driver;
 pub mod heuristic;
-mod parallel;
 mod reference;
 
+pub(crate) use divide::Rules;
 pub(crate) use driver::build_tree;
-pub use parallel::ThreadPoolError;
-pub(crate) use parallel::in_pool;
 pub use reference::{Flaw, PrimRef};

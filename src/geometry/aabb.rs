@@ -11,6 +11,7 @@ use super::{Axis, Scalar, max, min};
 /// assert!(Aabb::<f32>::EMPTY.is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Aabb<S = f32> {
     /// The corner with the smallest coordinates.
     pub min: [S; 3],

@@ -1,6 +1,6 @@
 //! The two scalars, `f32` and `f64`, behind one sealed trait.
 
-use crate::simd::{Lanes, Pair};
+use crate::simd::{Halves, Lanes, Pair};
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 use fearless_simd::{Simd, f32x4, f32x8, f32x16, f64x4, f64x8};
@@ -62,7 +62,7 @@ pub trait Scalar:
     #[doc(hidden)]
     type Times4<I: Simd>: Lanes<Self, Isa = I>;
     #[doc(hidden)]
-    type Times8<I: Simd>: Lanes<Self, Isa = I>;
+    type Times8<I: Simd>: Lanes<Self, Isa = I> + Halves<Self::Times4<I>>;
     #[doc(hidden)]
     type Times16<I: Simd>: Lanes<Self, Isa = I>;
     /// The scalar in which products and differences of this one's lose little or nothing: `f64`.
@@ -107,8 +107,15 @@ pub trait Scalar:
     fn from_f64(value: f64) -> Self;
     /// Exact for both scalars.
     fn to_f64(self) -> f64;
-    /// Rounded toward zero; 0 for NaN and below zero, saturating above.
-    fn to_usize(self) -> usize;
+    /// The nearest scalar to a number of things.
+    #[doc(hidden)]
+    fn from_count(count: i32) -> Self;
+    /// Rounded toward zero.
+    ///
+    /// # Safety
+    /// From 0 to 2^31 - 1.
+    #[doc(hidden)]
+    unsafe fn to_small_integer(self) -> i32;
     /// An integer whose unsigned order is the total order of the scalars.
     fn to_ordered_bits(self) -> u64;
 }
@@ -233,8 +240,13 @@ macro_rules! scalar {
                 f64::from(self)
             }
             #[inline(always)]
-            fn to_usize(self) -> usize {
-                self as usize
+            fn from_count(count: i32) -> Self {
+                count as $scalar
+            }
+            #[inline(always)]
+            unsafe fn to_small_integer(self) -> i32 {
+                // SAFETY: the caller's.
+                unsafe { self.to_int_unchecked() }
             }
             #[inline(always)]
             fn to_ordered_bits(self) -> u64 {

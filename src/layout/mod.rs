@@ -2,6 +2,7 @@
 
 mod blocks;
 mod collapse;
+mod plan;
 mod wide;
 
 pub(crate) use collapse::Contents;
@@ -9,7 +10,7 @@ pub use wide::WideTree;
 pub(crate) use wide::{MAX_PENDING, NOBODY, Reference, WideNode};
 
 use crate::geometry::{Aabb, Scalar};
-use crate::primitive::{Intersect, Leaf, Primitive};
+use crate::primitive::{Intersect, LEAF_WIDTH, Leaf, Primitive};
 use crate::simd::{Count, Width};
 use crate::tree::{Child, Node, Tree};
 
@@ -17,7 +18,11 @@ use crate::tree::{Child, Node, Tree};
 ///
 /// A type parameter of [`Bvh`](crate::Bvh), chosen by [`Builder::layout`](crate::Builder::layout). What is not chosen
 /// is not compiled. Answers are the same bits in all.
-pub trait Layout<P: Primitive>: Outline<P::Scalar> + Sized {
+pub trait Layout<P: Primitive>: Outline<P::Scalar> + Send + Sized {
+    /// How many primitives a leaf tests at once.
+    #[doc(hidden)]
+    const BLOCK_SIZE: usize;
+
     /// Lays out a tree over the primitives with its indices.
     #[doc(hidden)]
     fn lay_out(tree: Tree<P::Scalar>, primitives: &[P]) -> Option<Self>;
@@ -77,6 +82,8 @@ impl<S: Scalar> Outline<S> for Tree<S> {
 }
 
 impl<P: Primitive> Layout<P> for Tree<P::Scalar> {
+    const BLOCK_SIZE: usize = 1;
+
     fn lay_out(tree: Self, _: &[P]) -> Option<Self> {
         Some(tree)
     }
@@ -114,6 +121,8 @@ impl<P: Intersect, const N: usize> Layout<P> for WideTree<P::Scalar, N>
 where
     Count<N>: Width,
 {
+    const BLOCK_SIZE: usize = if <P::Leaf as Leaf<_, _>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
+
     fn lay_out(tree: Tree<P::Scalar>, primitives: &[P]) -> Option<Self> {
         Self::new(&tree, &primitives)
     }

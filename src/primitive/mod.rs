@@ -17,7 +17,7 @@ pub use triangle::{
 use crate::geometry::{Aabb, PreparedRay, Scalar};
 use alloc::boxed::Box;
 
-/// Something with a bounding box: all that a tree needs to be built.
+/// Something with a bounding box: all that a tree needs to be built. `Sync`, for builds read it on several threads.
 ///
 /// ```
 /// use bvhkit::{Aabb, Primitive};
@@ -31,7 +31,7 @@ use alloc::boxed::Box;
 ///     }
 /// }
 /// ```
-pub trait Primitive {
+pub trait Primitive: Sync {
     /// `f32` or `f64`: the scalar of its coordinates, and of the rays that it meets.
     type Scalar: Scalar;
 
@@ -47,12 +47,6 @@ pub trait Primitive {
     #[doc(hidden)]
     fn aabb_of_valid(&self) -> Aabb<Self::Scalar> {
         self.aabb()
-    }
-
-    /// The point by which heuristics sort the primitive; the middle of its box unless overridden.
-    /// Must be finite.
-    fn centroid(&self) -> [Self::Scalar; 3] {
-        self.aabb().center()
     }
 }
 
@@ -123,10 +117,6 @@ macro_rules! forward {
             #[inline(always)]
             fn aabb_of_valid(&self) -> Aabb<P::Scalar> {
                 (**self).aabb_of_valid()
-            }
-            #[inline(always)]
-            fn centroid(&self) -> [P::Scalar; 3] {
-                (**self).centroid()
             }
         }
 

@@ -48,11 +48,6 @@ impl<S: Scalar> Primitive for Sphere<S> {
             max: self.center.map(|x| (x + self.radius).next_up()),
         }
     }
-
-    #[inline(always)]
-    fn centroid(&self) -> [S; 3] {
-        self.center
-    }
 }
 
 impl<S: Scalar> Intersect for Sphere<S> {

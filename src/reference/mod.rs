@@ -86,6 +86,6 @@ fn all<'a, P: Intersect>(
     asked.iter().enumerate().filter_map(move |(index, primitive)| {
         recorder.primitive();
         let (t, payload) = accept(primitive, &prepared, prepared.t_max)?;
-        PrimRef::new(primitive, 0).flaw().is_none().then_some(Hit { t, index, payload })
+        PrimRef::new(primitive.aabb(), 0).flaw().is_none().then_some(Hit { t, index, payload })
     })
 }

@@ -3,7 +3,7 @@
 use crate::geometry::Scalar;
 use core::mem::MaybeUninit;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
+use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 /// Room for what a node puts on the stack.
 pub(crate) type Window<T> = [MaybeUninit<T>; 16];
@@ -104,7 +104,6 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn isa(self) -> I {
-                use fearless_simd::ExtractToken;
                 self.token()
             }
             #[inline(always)]
@@ -186,6 +185,32 @@ lanes!(f32, f32x16, mask32x16, 16, {
 });
 lanes!(f64, f64x4, mask64x4, 4, {});
 lanes!(f64, f64x8, mask64x8, 8, {});
+
+/// Lanes that are two times as many.
+pub trait Halves<H>: Sized {
+    /// The one's lanes, then the other's.
+    fn of_halves(halves: [H; 2]) -> Self;
+    fn to_halves(self) -> [H; 2];
+}
+
+macro_rules! halves {
+    ($lanes:ident, $half:ident, $combine:ident, $split:ident) => {
+        impl<I: Simd> Halves<fearless_simd::$half<I>> for fearless_simd::$lanes<I> {
+            #[inline(always)]
+            fn of_halves([first, second]: [fearless_simd::$half<I>; 2]) -> Self {
+                first.token().$combine(first, second)
+            }
+            #[inline(always)]
+            fn to_halves(self) -> [fearless_simd::$half<I>; 2] {
+                let (first, second) = self.token().$split(self);
+                [first, second]
+            }
+        }
+    };
+}
+
+halves!(f32x8, f32x4, combine_f32x4, split_f32x8);
+halves!(f64x8, f64x4, combine_f64x4, split_f64x8);
 
 /// Twice as many lanes.
 #[derive(Clone, Copy)]

@@ -12,6 +12,6 @@ mod pairs;
 
 pub use backend::InstructionSet;
 pub(crate) use backend::{Backend, Kernel};
-pub use lanes::Lanes;
 pub(crate) use lanes::{Count, Pair, Width, Window};
+pub use lanes::{Halves, Lanes};
 pub use pairs::Lanes4;

@@ -10,10 +10,6 @@ impl<P: Primitive> Primitive for Alone<P> {
     fn aabb(&self) -> Aabb<P::Scalar> {
         self.0.aabb()
     }
-
-    fn centroid(&self) -> [P::Scalar; 3] {
-        self.0.centroid()
-    }
 }
 
 impl<P: Intersect> Intersect for Alone<P> {

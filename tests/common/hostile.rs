@@ -20,7 +20,7 @@ impl<S: Scalar> Heuristic<S> for Hostile {
             4 => count(n - 1),
             5 => plane(S::from_f64(f64::NAN)),
             6 => plane(S::NEG_INFINITY),
-            7 => plane(node.centroids.max[axis.index()]),
+            7 => plane(node.centroids().max[axis.index()]),
             _ => Split::Leaf,
         }
     }

@@ -38,10 +38,6 @@ impl<S: Scalar> Primitive for Disc<S> {
         let ([x, y, z], r) = (self.center, self.radius);
         Aabb::new([x - r, y - r, z], [x + r, y + r, z])
     }
-
-    fn centroid(&self) -> [S; 3] {
-        self.aabb().min
-    }
 }
 
 impl<S: Scalar> Intersect for Disc<S> {

@@ -22,13 +22,6 @@ impl Primitive for Shape {
             Self::Sphere(sphere) => sphere.aabb(),
         }
     }
-
-    fn centroid(&self) -> [f32; 3] {
-        match self {
-            Self::Triangle(triangle) => triangle.centroid(),
-            Self::Sphere(sphere) => sphere.centroid(),
-        }
-    }
 }
 
 impl Intersect for Shape {

@@ -15,7 +15,8 @@ impl<S: Scalar> Heuristic<S> for Midpoint {
         if node.references.len() <= node.max_leaf_size {
             return Split::Leaf;
         }
-        let axis = node.centroids.longest_axis();
-        Split::Plane { axis, position: node.centroids.center()[axis.index()] }
+        let centroids = node.centroids();
+        let axis = centroids.longest_axis();
+        Split::Plane { axis, position: centroids.center()[axis.index()] }
     }
 }

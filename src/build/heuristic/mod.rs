@@ -8,6 +8,7 @@
 //! | [`SweepSah`] | the cheapest of all splits by the same | MacDonald and Booth 1990 |
 
 mod binned_sah;
+mod bins;
 mod median;
 mod midpoint;
 mod sah;
@@ -44,8 +45,8 @@ use crate::geometry::{Aabb, Axis, Scalar};
 ///         if node.references.len() <= node.max_leaf_size {
 ///             return Split::Leaf;
 ///         }
-///         let axis = node.centroids.longest_axis();
-///         let sum: f32 = node.references.iter().map(|r| r.centroid[axis.index()]).sum();
+///         let axis = node.centroids().longest_axis();
+///         let sum: f32 = node.references.iter().map(|r| r.centroid()[axis.index()]).sum();
 ///         Split::Plane { axis, position: sum / node.references.len() as f32 }
 ///     }
 /// }
@@ -72,14 +73,22 @@ impl<S: Scalar, H: Heuristic<S> + ?Sized> Heuristic<S> for &H {
 pub struct BuildNode<'a, S = f32> {
     /// The box around its primitives.
     pub aabb: Aabb<S>,
-    /// The box around their centroids.
-    pub centroids: Aabb<S>,
     /// Its primitives, at least two, in no particular order.
     pub references: &'a [PrimRef<S>],
     /// Its depth; the root has 0.
     pub depth: usize,
     /// The largest number of primitives for which [`Split::Leaf`] is accepted.
     pub max_leaf_size: usize,
+    /// How many primitives a leaf tests at once: 8 where they are packed side by side, else 1.
+    pub block_size: usize,
+}
+
+impl<S: Scalar> BuildNode<'_, S> {
+    /// The box around the primitives' centroids: O(n), for those who ask.
+    pub fn centroids(&self) -> Aabb<S> {
+        let join = |all: Aabb<S>, reference: &PrimRef<S>| all.grow(reference.centroid());
+        self.references.iter().fold(Aabb::EMPTY, join)
+    }
 }
 
 /// What a heuristic proposes.
@@ -87,14 +96,14 @@ pub struct BuildNode<'a, S = f32> {
 pub enum Split<S = f32> {
     /// No split: make a leaf.
     Leaf,
-    /// Left, the references with `centroid[axis] < position`; right, the others.
+    /// Left, the references with `centroid()[axis] < position`; right, the others.
     Plane {
         /// The axis across which the plane lies.
         axis: Axis,
         /// The plane's coordinate on it.
         position: S,
     },
-    /// Left, the `left` references with the smallest `centroid[axis]`, equal ones by index.
+    /// Left, the `left` references with the smallest `centroid()[axis]`, equal ones by index.
     Count {
         /// The axis along which to count.
         axis: Axis,

@@ -1,5 +1,8 @@
 //! The surface area heuristic's costs.
 
+use super::BuildNode;
+use crate::geometry::Scalar;
+
 /// The costs that the surface area heuristic weighs against each other.
 ///
 /// A ray that meets a node's box meets a child's with a probability of about the ratio of their
@@ -9,7 +12,8 @@
 /// traversal + intersection * (area(left) * n_left + area(right) * n_right) / area(node)
 /// ```
 ///
-/// and a leaf `intersection * n`. Only the ratio of the two matters.
+/// and a leaf `intersection * n`, or `intersection * ceil(n / 8)` where eight are tested at once. Only the ratio of the
+/// two matters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SahCost {
     /// Of a step through an inner node: two box tests and the choice between them.
@@ -28,9 +32,21 @@ impl Default for SahCost {
 }
 
 impl SahCost {
-    /// Whether a leaf of `n` costs no more than the best split, whose sides' areas times numbers
-    /// of primitives sum to `weighted_area`.
-    pub(super) fn prefers_leaf(&self, n: usize, area: f64, weighted_area: f64) -> bool {
-        self.intersection * n as f64 * area <= self.traversal * area + self.intersection * weighted_area
+    /// Whether a leaf costs no more than the best split, whose sides' areas times numbers of primitives sum to
+    /// `weighted_area`.
+    pub(super) fn prefers_leaf<S: Scalar>(
+        &self,
+        node: &BuildNode<'_, S>,
+        area: f64,
+        weighted_area: f64,
+    ) -> bool {
+        let tests = node.references.len().div_ceil(node.block_size) as f64;
+        let split = self.traversal * area + self.intersection * weighted_area / node.block_size as f64;
+        self.intersection * tests * area <= split
+    }
+
+    /// Whether one block holds all, which no split makes cheaper.
+    pub(super) fn is_block<S: Scalar>(node: &BuildNode<'_, S>) -> bool {
+        node.references.len() <= node.block_size.min(node.max_leaf_size)
     }
 }

@@ -1,9 +1,9 @@
 //! The surface area heuristic on every split there is.
 
 use super::{BuildNode, Heuristic, SahCost, Split};
-use crate::build::parallel;
 use crate::build::reference::PrimRef;
 use crate::geometry::{Aabb, Axis, Scalar};
+use crate::parallel;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -30,12 +30,12 @@ impl SweepSah {
 impl<S: Scalar> Heuristic<S> for SweepSah {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
         let n = node.references.len();
-        if n < 2 {
+        if n < 2 || SahCost::is_block(node) {
             return Split::Leaf;
         }
-        let scale = node.aabb.area_scale();
+        let (scale, centroids) = (node.aabb.area_scale(), node.centroids());
         let best = |axis: Axis, memory: &mut [Place]| {
-            if node.centroids.min[axis.index()] < node.centroids.max[axis.index()] {
+            if centroids.min[axis.index()] < centroids.max[axis.index()] {
                 best_count(node.references, axis, scale, memory)
             } else {
                 // No order to sweep in.
@@ -61,7 +61,7 @@ impl<S: Scalar> Heuristic<S> for SweepSah {
             }
         }
         let area = node.aabb.scaled_half_area(scale).to_f64();
-        if n <= node.max_leaf_size && self.cost.prefers_leaf(n, area, best.weighted_area) {
+        if n <= node.max_leaf_size && self.cost.prefers_leaf(node, area, best.weighted_area) {
             Split::Leaf
         } else {
             Split::Count { axis, left: best.left }
@@ -90,7 +90,7 @@ struct Place {
 fn best_count<S: Scalar>(references: &[PrimRef<S>], axis: Axis, scale: S, memory: &mut [Place]) -> Best {
     let n = references.len();
     for ((place, reference), position) in memory.iter_mut().zip(references).zip(0..) {
-        place.key = (reference.centroid[axis.index()].to_ordered_bits(), reference.index);
+        place.key = (reference.centroid()[axis.index()].to_ordered_bits(), reference.index);
         place.position = position;
     }
     memory.sort_unstable_by_key(|place| place.key);
@@ -121,7 +121,7 @@ fn best_count<S: Scalar>(references: &[PrimRef<S>], axis: Axis, scale: S, memory
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::build::reference::Extent;
+    use crate::build::reference::bounds;
 
     #[test]
     fn the_split_is_the_cheapest_of_all() {
@@ -135,18 +135,15 @@ mod tests {
             .map(|index| {
                 let min = [next() * 9.0, next() * 5.0, next() * 7.0];
                 let aabb = Aabb::new(min, min.map(|x| x + next()));
-                PrimRef { aabb, centroid: aabb.center(), index }
+                PrimRef::new(aabb, index)
             })
             .collect();
-        let extent = Extent::of(&references);
+        let aabb = bounds(&references);
         let price = |axis: Axis, left: usize| {
             let mut sorted = references.clone();
-            sorted.sort_by(|a, b| a.centroid[axis.index()].total_cmp(&b.centroid[axis.index()]));
+            sorted.sort_by(|a, b| a.centroid()[axis.index()].total_cmp(&b.centroid()[axis.index()]));
             let (front, back) = sorted.split_at(left);
-            [front, back]
-                .map(|side| Extent::of(side).aabb.half_area() * side.len() as f32)
-                .iter()
-                .sum::<f32>()
+            [front, back].map(|side| bounds(side).half_area() * side.len() as f32).iter().sum::<f32>()
         };
         let cheapest = Axis::ALL
             .iter()
@@ -154,11 +151,11 @@ mod tests {
             .min_by(|&(a, i), &(b, j)| price(a, i).total_cmp(&price(b, j)))
             .unwrap();
         let split = SweepSah::default().split(&BuildNode {
-            aabb: extent.aabb,
-            centroids: extent.centroids,
+            aabb,
             references: &references,
             depth: 0,
             max_leaf_size: 1,
+            block_size: 1,
         });
         assert_eq!(split, Split::Count { axis: cheapest.0, left: cheapest.1 });
     }

@@ -34,7 +34,7 @@ use crate::geometry::{Aabb, PreparedRay, Scalar};
 /// assert_eq!(bvh.primitive(hit.index).0.material, 7);
 /// # Ok::<(), bvhkit::BuildError>(())
 /// ```
-pub trait Corners {
+pub trait Corners: Sync {
     /// `f32` or `f64`.
     type Scalar: Scalar;
 

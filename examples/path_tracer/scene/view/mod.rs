@@ -93,7 +93,7 @@ impl Region {
         let mut low = Vec3::ZERO;
         let mut high = Vec3::ZERO;
         for axis in 0..3 {
-            let mut centers: Vec<f32> = shapes.iter().map(|shape| shape.centroid()[axis]).collect();
+            let mut centers: Vec<f32> = shapes.iter().map(|shape| shape.aabb().center()[axis]).collect();
             centers.sort_unstable_by(f32::total_cmp);
             low[axis] = centers[centers.len() / 50];
             high[axis] = centers[centers.len() - 1 - centers.len() / 50];

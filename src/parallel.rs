@@ -24,15 +24,28 @@ impl core::error::Error for ThreadPoolError {}
 /// Applies `f` to each item, results in the items' order. A single item is done on the spot, so
 /// that small builds never wake a thread.
 #[cfg(feature = "rayon")]
-pub(super) fn map<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
+pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
     use rayon::prelude::*;
     if items.len() < 2 { items.into_iter().map(f).collect() } else { items.into_par_iter().map(f).collect() }
 }
 
 /// Applies `f` to each item, results in the items' order.
 #[cfg(not(feature = "rayon"))]
-pub(super) fn map<T, R>(items: Vec<T>, f: impl Fn(T) -> R) -> Vec<R> {
+pub(crate) fn map<T, R>(items: Vec<T>, f: impl Fn(T) -> R) -> Vec<R> {
     items.into_iter().map(f).collect()
+}
+
+/// Both, at the same time if that can be.
+#[cfg(feature = "rayon")]
+pub(crate) fn join(a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
+    rayon::join(a, b);
+}
+
+/// Both, one after the other.
+#[cfg(not(feature = "rayon"))]
+pub(crate) fn join(a: impl FnOnce(), b: impl FnOnce()) {
+    a();
+    b();
 }
 
 /// Runs `f` where [`map`] has `threads` threads; with `None`, those of the pool it is called in.

@@ -1,0 +1,189 @@
+//! From the binary tree to the wide one: which nodes' children become children of one wide node, and which
+//! subtrees become one leaf.
+//!
+//! By dynamic programming over the surface area heuristic (Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal
+//! on GPUs Through Compressed Wide BVHs, HPG 2017): for each binary node, the least cost of all that is below it if it
+//! is represented by a forest of at most k roots, for each k up to N.
+//!
+//! ```text
+//! forest(n, 1)  = min(leaf(n), node(n))
+//! forest(n, k)  = min(forest(n, k - 1), split(n, k))
+//! split(n, k)   = min over j of forest(left, j) + forest(right, k - j)
+//! node(n)       = area(n) * NODE + split(n, N)
+//! leaf(n)       = area(n) * LEAF, if its primitives fit into one
+//! ```
+
+use crate::geometry::{Aabb, Scalar};
+use crate::parallel;
+use crate::primitive::LEAF_WIDTH;
+use crate::tree::{Child, MAX_DEPTH, Tree};
+use alloc::vec::Vec;
+
+/// The cost of a node, in units of which a leaf of packed primitives costs a half.
+const NODE: f32 = 1.0;
+/// The cost of a leaf whose primitives are tested side by side.
+const PACKED_LEAF: f32 = 0.5;
+/// The cost of a primitive in a leaf that asks them one by one.
+const PRIMITIVE: f32 = 0.5;
+
+/// Nodes above which both sides are weighed at the same time.
+const PARALLEL: usize = 1 << 12;
+
+/// The binary tree with the costs of what it may become.
+pub(super) struct Plan<'t, S, const N: usize> {
+    pub tree: &'t Tree<S>,
+    /// For each inner node.
+    weights: Vec<Weight<N>>,
+    /// 1 / the largest extent.
+    scale: S,
+    is_packed: bool,
+}
+
+/// What is known of all that is below a binary node.
+#[derive(Clone, Copy)]
+struct Weight<const N: usize> {
+    /// By k - 1: the least cost of a forest of at most k roots, times the root's area.
+    forest: [f32; N],
+    /// How many roots it has at the most: more are no cheaper.
+    roots: usize,
+    /// How many primitives there are, and the first slot.
+    slots: (u32, u32),
+}
+
+impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
+    pub fn new(tree: &'t Tree<S>, is_packed: bool) -> Self {
+        let unknown = Weight { forest: [0.0; N], roots: 0, slots: (0, 0) };
+        let mut weights = alloc::vec![unknown; tree.nodes.len()];
+        let plan = Self { tree, weights: Vec::new(), scale: tree.aabb.area_scale(), is_packed };
+        plan.weigh(&mut weights, 0);
+        Self { weights, ..plan }
+    }
+
+    /// Weighs the nodes of a subtree, whose first is number `first`.
+    ///
+    /// A tree's nodes lie depth first: behind a node are those of its left side, then those of its right.
+    fn weigh(&self, weights: &mut [Weight<N>], first: usize) {
+        if weights.len() > PARALLEL {
+            let (root, below) = weights.split_at_mut(1);
+            let children = self.tree.nodes[first].children;
+            let border =
+                if children[1].is_leaf() { below.len() } else { children[1].first as usize - first - 1 };
+            let (left, right) = below.split_at_mut(border);
+            parallel::join(|| self.weigh(left, first + 1), || self.weigh(right, first + 1 + border));
+            root[0] = self.weight(first, below);
+        } else {
+            for place in (0..weights.len()).rev() {
+                let (until, below) = weights.split_at_mut(place + 1);
+                until[place] = self.weight(first + place, below);
+            }
+        }
+    }
+
+    /// `below` are the weights of the nodes that follow.
+    fn weight(&self, index: usize, below: &[Weight<N>]) -> Weight<N> {
+        let node = &self.tree.nodes[index];
+        let weight = |side: usize| match node.children[side] {
+            leaf if leaf.is_leaf() => self.weight_of_leaf(leaf, self.area(&node.aabb(side))),
+            inner => below[inner.first as usize - index - 1],
+        };
+        let (left, right) = (weight(0), weight(1));
+        let slots = (left.slots.0 + right.slots.0, left.slots.1.min(right.slots.1));
+        let roots = (left.roots + right.roots).min(N);
+        let area = self.area(&node.aabb(0).union(node.aabb(1)));
+        let mut forest = [f32::INFINITY; N];
+        for (j, cost) in left.forest[..left.roots].iter().enumerate() {
+            for (total, other) in forest[1..].iter_mut().skip(j).zip(&right.forest[..right.roots]) {
+                *total = total.min(cost + other);
+            }
+        }
+        forest[0] = (area * NODE + forest[roots - 1]).min(self.leaf_cost(area, slots.0));
+        for k in 1..N {
+            forest[k] = forest[k].min(forest[k - 1]);
+        }
+        Weight { forest, roots, slots }
+    }
+
+    fn weight_of_leaf(&self, leaf: Child, area: f32) -> Weight<N> {
+        let blocks = leaf.count.div_ceil(LEAF_WIDTH as u32);
+        let cost = if self.is_packed { PACKED_LEAF * blocks as f32 } else { PRIMITIVE * leaf.count as f32 };
+        Weight { forest: [area * cost; N], roots: 1, slots: (leaf.count, leaf.first) }
+    }
+
+    /// The cost of all below an inner node as one leaf.
+    fn leaf_cost(&self, area: f32, count: u32) -> f32 {
+        if count as usize > LEAF_WIDTH {
+            f32::INFINITY
+        } else if self.is_packed {
+            area * PACKED_LEAF
+        } else {
+            area * PRIMITIVE * count as f32
+        }
+    }
+
+    pub fn area(&self, aabb: &Aabb<S>) -> f32 {
+        aabb.scaled_half_area(self.scale).to_f64() as f32
+    }
+
+    /// How many primitives are below, and the first slot.
+    pub fn slots(&self, child: Child) -> (u32, u32) {
+        if child.is_leaf() { (child.count, child.first) } else { self.weights[child.first as usize].slots }
+    }
+
+    /// Whether all below is to be one leaf, if it is a root.
+    pub fn is_leaf(&self, child: Child, aabb: &Aabb<S>) -> bool {
+        let (count, _) = self.slots(child);
+        count as usize <= LEAF_WIDTH
+            && (child.is_leaf()
+                || self.leaf_cost(self.area(aabb), count) <= self.weights[child.first as usize].forest[0])
+    }
+
+    /// The roots that stand for the children of a binary node, at most N, with their boxes.
+    pub fn cheapest(&self, node: usize, roots: &mut Vec<(Child, Aabb<S>)>) {
+        // What is still to be split, with how many roots it may have.
+        let mut open = Vec::with_capacity(MAX_DEPTH + 1);
+        self.split(node, N, &mut open);
+        while let Some((child, aabb, k)) = open.pop() {
+            if child.is_leaf() {
+                roots.push((child, aabb));
+                continue;
+            }
+            let forest = &self.weights[child.first as usize].forest;
+            // The fewest roots for that cost.
+            let fewest = (1..=k).find(|&fewer| forest[fewer - 1] <= forest[k - 1]).unwrap_or(k);
+            if fewest == 1 {
+                roots.push((child, aabb));
+            } else {
+                self.split(child.first as usize, fewest, &mut open);
+            }
+        }
+    }
+
+    /// Divides k roots among the two children of a node.
+    fn split(&self, node: usize, k: usize, open: &mut Vec<(Child, Aabb<S>, usize)>) {
+        let node = &self.tree.nodes[node];
+        let forest = |side: usize, k: usize| match node.children[side] {
+            leaf if leaf.is_leaf() => self.weight_of_leaf(leaf, self.area(&node.aabb(side))).forest[0],
+            inner => self.weights[inner.first as usize].forest[k - 1],
+        };
+        let cost = |j: usize| forest(0, j) + forest(1, k - j);
+        let best =
+            (1..k).map(|j| (cost(j), j)).reduce(|best, next| if next.0 < best.0 { next } else { best });
+        let left = best.map_or(1, |(_, left)| left);
+        open.push((node.children[1], node.aabb(1), k - left));
+        open.push((node.children[0], node.aabb(0), left));
+    }
+
+    /// Instead of [`cheapest`](Self::cheapest): all that is a number of levels below a binary node, or a leaf before, as
+    /// many levels as N has room for.
+    pub fn by_levels(&self, node: usize, roots: &mut Vec<(Child, Aabb<S>)>) {
+        let mut open = alloc::vec![(Child::inner(node), self.tree.aabb, 0)];
+        while let Some((child, aabb, depth)) = open.pop() {
+            if depth == N.ilog2() || (depth > 0 && self.is_leaf(child, &aabb)) || child.is_leaf() {
+                roots.push((child, aabb));
+            } else {
+                let node = &self.tree.nodes[child.first as usize];
+                open.extend([1, 0].map(|side| (node.children[side], node.aabb(side), depth + 1)));
+            }
+        }
+    }
+}
