@@ -35,19 +35,6 @@ pub(crate) fn map<T, R>(items: Vec<T>, f: impl Fn(T) -> R) -> Vec<R> {
     items.into_iter().map(f).collect()
 }
 
-/// Both, at the same time if that can be.
-#[cfg(feature = "rayon")]
-pub(crate) fn join(a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
-    rayon::join(a, b);
-}
-
-/// Both, one after the other.
-#[cfg(not(feature = "rayon"))]
-pub(crate) fn join(a: impl FnOnce(), b: impl FnOnce()) {
-    a();
-    b();
-}
-
 /// Runs `f` where [`map`] has `threads` threads; with `None`, those of the pool it is called in.
 #[cfg(feature = "rayon")]
 pub(crate) fn in_pool<R: Send>(

@@ -18,6 +18,7 @@ use crate::parallel;
 use crate::primitive::LEAF_WIDTH;
 use crate::tree::{Child, MAX_DEPTH, Tree};
 use alloc::vec::Vec;
+use core::ops::Range;
 
 /// The cost of a node, in units of which a leaf of packed primitives costs a half.
 const NODE: f32 = 1.0;
@@ -26,8 +27,8 @@ const PACKED_LEAF: f32 = 0.5;
 /// The cost of a primitive in a leaf that asks them one by one.
 const PRIMITIVE: f32 = 0.5;
 
-/// Nodes above which both sides are weighed at the same time.
-const PARALLEL: usize = 1 << 12;
+/// Subtrees of so many nodes are weighed at the same time.
+const SUBTREE: usize = 1 << 11;
 
 /// The binary tree with the costs of what it may become.
 pub(super) struct Plan<'t, S, const N: usize> {
@@ -55,28 +56,45 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
         let unknown = Weight { forest: [0.0; N], roots: 0, slots: (0, 0) };
         let mut weights = alloc::vec![unknown; tree.nodes.len()];
         let plan = Self { tree, weights: Vec::new(), scale: tree.aabb.area_scale(), is_packed };
-        plan.weigh(&mut weights, 0);
+        let (top, subtrees) = plan.divide();
+        let (mut parts, mut rest, mut done) = (Vec::with_capacity(subtrees.len()), weights.as_mut_slice(), 0);
+        for nodes in subtrees {
+            let (part, behind) = rest[nodes.start - done..].split_at_mut(nodes.len());
+            parts.push((nodes.start, part));
+            (rest, done) = (behind, nodes.end);
+        }
+        // Children lie behind their parents.
+        parallel::map(parts, |(first, weights)| {
+            for place in (0..weights.len()).rev() {
+                let (until, below) = weights.split_at_mut(place + 1);
+                until[place] = plan.weight(first + place, below);
+            }
+        });
+        for index in top.into_iter().rev() {
+            let (until, below) = weights.split_at_mut(index + 1);
+            until[index] = plan.weight(index, below);
+        }
         Self { weights, ..plan }
     }
 
-    /// Weighs the nodes of a subtree, whose first is number `first`.
+    /// The nodes of large subtrees, and the small subtrees below them, in the order of the nodes.
     ///
     /// A tree's nodes lie depth first: behind a node are those of its left side, then those of its right.
-    fn weigh(&self, weights: &mut [Weight<N>], first: usize) {
-        if weights.len() > PARALLEL {
-            let (root, below) = weights.split_at_mut(1);
-            let children = self.tree.nodes[first].children;
-            let border =
-                if children[1].is_leaf() { below.len() } else { children[1].first as usize - first - 1 };
-            let (left, right) = below.split_at_mut(border);
-            parallel::join(|| self.weigh(left, first + 1), || self.weigh(right, first + 1 + border));
-            root[0] = self.weight(first, below);
-        } else {
-            for place in (0..weights.len()).rev() {
-                let (until, below) = weights.split_at_mut(place + 1);
-                until[place] = self.weight(first + place, below);
+    fn divide(&self) -> (Vec<usize>, Vec<Range<usize>>) {
+        let (mut top, mut subtrees) = (Vec::new(), Vec::new());
+        let mut open = alloc::vec![0..self.tree.nodes.len()];
+        while let Some(nodes) = open.pop() {
+            if nodes.len() <= SUBTREE {
+                subtrees.push(nodes);
+                continue;
             }
+            let right = self.tree.nodes[nodes.start].children[1];
+            let border = if right.is_leaf() { nodes.end } else { right.first as usize };
+            top.push(nodes.start);
+            open.push(border..nodes.end);
+            open.push(nodes.start + 1..border);
         }
+        (top, subtrees)
     }
 
     /// `below` are the weights of the nodes that follow.

@@ -13,7 +13,7 @@ pub fn all<S: Scalar>() -> Vec<(&'static str, Box<dyn Heuristic<S>>)> {
         ("midpoint", Box::new(Midpoint)),
         ("2 bins", Box::new(BinnedSah::new(2))),
         ("7 bins", Box::new(BinnedSah { bins: 7, cost: lazy })),
-        ("64 bins", Box::new(BinnedSah::new(64))),
+        ("32 bins", Box::new(BinnedSah::new(32))),
         ("sweep", Box::new(SweepSah::default())),
         ("fast", Box::new(Quality::Fast)),
         ("hostile", Box::new(Hostile)),

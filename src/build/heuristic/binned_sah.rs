@@ -28,7 +28,7 @@ pub struct BinnedSah {
 
 impl BinnedSah {
     /// The largest number of bins.
-    pub const MAX_BINS: usize = 64;
+    pub const MAX_BINS: usize = 32;
 
     /// With `bins` bins and the default costs.
     pub fn new(bins: usize) -> Self {
@@ -55,7 +55,6 @@ impl<S: Scalar> Heuristic<S> for BinnedSah {
         match if is_small { bins.div_ceil(2).max(2) } else { bins } {
             bins @ ..=8 => self.split_with::<S, 8>(node, bins),
             bins @ 9..=16 => self.split_with::<S, 16>(node, bins),
-            bins @ 17..=32 => self.split_with::<S, 32>(node, bins),
             bins => self.split_with::<S, { Self::MAX_BINS }>(node, bins),
         }
     }

@@ -62,7 +62,8 @@ impl<S: Scalar, const N: usize> Bins<'_, S, N> {
     fn fill<I: Simd>(&self, isa: I, scale: [S; 3]) -> Filled<S, I, N> {
         let grid = Grid::new(isa, self.span.min, scale, self.count);
         let mut filled = Filled::empty(isa);
-        if self.references.len() < 8 * N {
+        // More bins would take more of the stack than a worker may have.
+        if N > 16 || self.references.len() < 8 * N {
             for reference in self.references {
                 filled.count(isa, &grid, reference);
             }
