@@ -25,9 +25,15 @@ mod truth;
 
 #[path = "../../tests/support/closed.rs"]
 mod closed;
+#[path = "../shared/columns.rs"]
+#[expect(dead_code, reason = "this bench has its own way with numbers")]
+mod columns;
+#[path = "../shared/extent.rs"]
+mod extent;
 #[path = "../shared/file.rs"]
 mod file;
 #[path = "../shared/obvhs.rs"]
+#[expect(dead_code, reason = "any hit is not judged")]
 mod obvhs_peer;
 #[path = "../../tests/support/mod.rs"]
 mod support;
@@ -75,9 +81,7 @@ fn places() -> impl Iterator<Item = Place> {
 }
 
 fn main() -> anyhow::Result<()> {
-    // `cargo test` passes no `--bench`.
-    let argument = |wanted: &str| std::env::args().any(|argument| argument == wanted);
-    let extent = if argument("--bench") && !argument("--test") { BENCH } else { TEST };
+    let extent = if extent::is_bench() { BENCH } else { TEST };
     mesh::check();
     let contestants: Vec<Contestant> = ours::contestants().into_iter().chain(peers::contestants()).collect();
 

@@ -2,7 +2,7 @@
 
 use crate::support::rays::Rays;
 use crate::support::scenes::NamedScene;
-use crate::timing::interleaved;
+use crate::timing;
 use crate::tracer::Contestant;
 use std::hint::black_box;
 
@@ -14,9 +14,10 @@ pub fn mega_rays(
     rays: usize,
     repetitions: usize,
 ) -> Vec<f64> {
-    let Rays { primary, diffuse, shadow, random } = Rays::new(scene, rays);
+    let Rays { primary, diffuse, shadow, random } = Rays::new(&scene.triangles, scene, rays);
     let rays = [primary, diffuse, shadow, random].concat();
     let tracers: Vec<_> = contestants.iter().map(|contestant| (contestant.build)(&scene.triangles)).collect();
-    let times = interleaved(tracers.len(), repetitions, |i| black_box(tracers[i].count_hits(&rays)));
-    times.iter().map(|time| rays.len() as f64 / time.as_secs_f64() / 1e6).collect()
+    let times =
+        timing::interleaved(tracers.len(), repetitions, |_| (), |i| black_box(tracers[i].count_hits(&rays)));
+    times.into_iter().map(|time| timing::mega_rays(rays.len(), time)).collect()
 }

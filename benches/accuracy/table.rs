@@ -1,10 +1,10 @@
 //! The tables: what was counted in all, and leaks by place.
 
+use crate::columns;
 use crate::judge::Outcome;
 use crate::mesh::Mesh;
 use crate::tally::{Tally, by_place};
 use crate::tracer::Contestant;
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
 const HEADER: [&str; 11] = [
     "",
@@ -39,7 +39,7 @@ pub fn print(contestants: &[Contestant], speeds: &[f64], outcomes: &[Outcome]) {
     println!("\n{LEGEND}\n");
     let is_default = |contestant: &Contestant| contestant.name == crate::ours::DEFAULT;
     let default = contestants.iter().position(is_default).map_or(f64::NAN, |i| speeds[i]);
-    let mut totals = table(&HEADER.map(String::from));
+    let mut totals = columns::table(HEADER, 1);
     for (i, (contestant, speed)) in contestants.iter().zip(speeds).enumerate() {
         let mut tally = Tally::default();
         outcomes.iter().for_each(|outcome| tally += &outcome.tallies[i]);
@@ -49,7 +49,7 @@ pub fn print(contestants: &[Contestant], speeds: &[f64], outcomes: &[Outcome]) {
     println!("{totals}\n\nLeaks by place, at vertices and edges:\n");
 
     let names = contestants.iter().map(|contestant| contestant.name.to_string());
-    let mut leaks = table(&[String::new()].into_iter().chain(names).collect::<Vec<_>>());
+    let mut leaks = columns::table([String::new()].into_iter().chain(names).collect::<Vec<_>>(), 1);
     let columns: Vec<_> = (0..contestants.len()).map(|i| by_place(outcomes, i)).collect();
     for (row, (place, _)) in columns[0].iter().enumerate() {
         let cells = columns.iter().map(|column| column[row].1.to_string());
@@ -64,21 +64,11 @@ pub fn print_file(contestants: &[Contestant], mesh: &Mesh, outcome: &Outcome) {
     if !mesh.is_closed {
         println!("not closed (some edge belongs to an odd number of triangles), so leaks are not counted");
     }
-    let mut table = table(&HEADER.map(String::from));
+    let mut table = columns::table(HEADER, 1);
     for (contestant, tally) in contestants.iter().zip(&outcome.tallies) {
         table.add_row(row(contestant, "-", tally));
     }
     println!("\n{table}");
-}
-
-fn table(header: &[String]) -> Table {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN).set_content_arrangement(ContentArrangement::Disabled);
-    table.set_header(header);
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    table
 }
 
 fn row(contestant: &Contestant, speed: &str, tally: &Tally) -> Vec<String> {

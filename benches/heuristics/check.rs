@@ -1,7 +1,7 @@
 //! Compares everyone's answers, before anyone's time is taken.
 
-use crate::agreement::{Answers, Disagreements, assert_exact};
 use crate::hierarchy::{Hierarchy, Method};
+use crate::shared::agreement::{Answers, Disagreements, assert_exact};
 use crate::workload::Workload;
 use bvhkit::Ray;
 
@@ -27,11 +27,11 @@ impl Check {
         let step = (rays.len() * triangles.len()).div_ceil(NAIVE_TESTS).max(1);
         let sample: Vec<Ray> = rays.iter().step_by(step).copied().collect();
         let naive = Answers::naive(triangles, &sample);
-        let ours = Answers::of(&*built[0], &rays);
+        let ours = built[0].answers(&rays);
         let mut check = Self { sample: sample.len(), from_naive: Vec::new(), from_ours: Vec::new() };
         for (method, hierarchy) in methods.iter().zip(built) {
-            let on_sample = Answers::of(&**hierarchy, &sample);
-            let on_all = Answers::of(&**hierarchy, &rays);
+            let on_sample = hierarchy.answers(&sample);
+            let on_all = hierarchy.answers(&rays);
             if method.ours {
                 let what = format!("{} on {}", method.name, workload.name);
                 assert_exact(&what, &sample, &naive, &on_sample);

@@ -1,17 +1,16 @@
 //! Criterion's groups: build, closest hit and any hit, for each scene and size.
 
 use crate::hierarchy::Method;
+use crate::shared::criterion::flat_group;
 use crate::workload::Workload;
 use criterion::measurement::WallTime;
-use criterion::{BenchmarkGroup, Criterion, SamplingMode, Throughput};
+use criterion::{BenchmarkGroup, Criterion};
 
 /// `size` is the number of triangles by name; the scene may have a few less.
 pub fn measure(criterion: &mut Criterion, size: usize, workload: &Workload, methods: &[Method]) {
     let Workload { name, triangles, closest, any } = workload;
     let mut group = |query: &str, elements: usize, bench: &dyn Fn(&mut BenchmarkGroup<'_, WallTime>)| {
-        let mut group = criterion.benchmark_group(format!("{query}/{name}/{size}"));
-        // An iteration takes milliseconds: more of them in later samples would only cost time.
-        group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(elements as u64));
+        let mut group = flat_group(criterion, format!("{query}/{name}/{size}"), elements);
         bench(&mut group);
         group.finish();
     };

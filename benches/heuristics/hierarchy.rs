@@ -1,9 +1,7 @@
 //! What is measured: ways to build a hierarchy, whoever wrote it, and the hierarchies they build.
 
+use crate::shared::agreement::{Answers, Hit};
 use bvhkit::{Ray, Triangle};
-
-/// Which triangle, and where.
-pub type Hit = bvhkit::Hit<f32, ()>;
 
 /// One build, which can be repeated.
 pub type Build = Box<dyn Fn() -> Box<dyn Hierarchy>>;
@@ -36,6 +34,13 @@ pub trait Hierarchy {
     fn any_hits(&self, rays: &[Ray], hits: &mut Vec<bool>) {
         hits.clear();
         hits.extend(rays.iter().map(|ray| self.any_hit(ray)));
+    }
+
+    fn answers(&self, rays: &[Ray]) -> Answers {
+        let mut answers = Answers::default();
+        self.closest_hits(rays, &mut answers.closest);
+        self.any_hits(rays, &mut answers.any);
+        answers
     }
 }
 

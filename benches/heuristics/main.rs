@@ -6,7 +6,6 @@
 //! All of it runs on one thread. A filter, such as `-- build/terrain`, applies to criterion alone:
 //! one that matches nothing leaves the table.
 
-mod agreement;
 mod check;
 mod groups;
 mod hierarchy;
@@ -15,18 +14,12 @@ mod peer;
 mod table;
 mod workload;
 
-#[path = "../shared/file.rs"]
-mod file;
-#[path = "../shared/obvhs.rs"]
-mod obvhs_peer;
+#[path = "../shared/mod.rs"]
+mod shared;
 #[path = "../../tests/support/mod.rs"]
 mod support;
-#[path = "../shared/timing.rs"]
-mod timing;
 
-use criterion::Criterion;
 use hierarchy::Method;
-use std::time::Duration;
 use workload::Workload;
 
 /// How much to do.
@@ -55,23 +48,16 @@ const BENCH: Extent = Extent {
 const TEST: Extent = Extent { sizes: &[200], rays: 64, table_size: 500, table_rays: 256, repetitions: 1 };
 
 fn main() -> anyhow::Result<()> {
-    // Criterion's own rule: `cargo test` passes no `--bench`.
-    let argument = |wanted: &str| std::env::args().any(|argument| argument == wanted);
-    let extent = if argument("--bench") && !argument("--test") { BENCH } else { TEST };
+    let extent = if shared::extent::is_bench() { BENCH } else { TEST };
     // Parallel builds use the pool that they are called in.
     rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| run(&extent))
 }
 
 fn run(extent: &Extent) -> anyhow::Result<()> {
     let methods: Vec<Method> = ours::methods().into_iter().chain(peer::methods()).collect();
-    let file = file::scene()?;
+    let file = shared::file::scene()?;
 
-    let mut criterion = Criterion::default()
-        .sample_size(10)
-        .warm_up_time(Duration::from_millis(100))
-        .measurement_time(Duration::from_millis(300))
-        .without_plots()
-        .configure_from_args();
+    let mut criterion = shared::criterion::brief_criterion();
     for &size in extent.sizes {
         for scene in support::scenes::all(size) {
             groups::measure(&mut criterion, size, &Workload::new(&scene, extent.rays), &methods);

@@ -1,6 +1,7 @@
 //! This crate's heuristics.
 
-use crate::hierarchy::{Build, Hierarchy, Hit, Method, Statistics};
+use crate::hierarchy::{Build, Hierarchy, Method, Statistics};
+use crate::shared::agreement::{Hit, bare};
 use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, SweepSah};
 use bvhkit::{Bvh, Counters, Ray, Triangle};
 
@@ -27,7 +28,7 @@ fn prepare(heuristic: impl Heuristic<f32> + Copy + 'static, triangles: &[Triangl
 
 impl Hierarchy for Bvh<Triangle> {
     fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        self.closest_hit(ray).map(|hit| Hit { t: hit.t, index: hit.index, payload: () })
+        self.closest_hit(ray).map(bare)
     }
 
     fn any_hit(&self, ray: &Ray) -> bool {

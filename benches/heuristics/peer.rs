@@ -1,7 +1,8 @@
 //! `obvhs` as a method: its presets, timed from triangles in its own format.
 
-use crate::hierarchy::{Build, Hierarchy, Hit, Method, Statistics};
-use crate::obvhs_peer::{Peer, Test, Traversal, convert, convert_ray};
+use crate::hierarchy::{Build, Hierarchy, Method, Statistics};
+use crate::shared::agreement::Hit;
+use crate::shared::obvhs::{Peer, Traversal, convert};
 use bvhkit::Ray;
 use obvhs::BvhBuildParams;
 use obvhs::bvh2::Bvh2;
@@ -33,13 +34,13 @@ fn cwbvh(parameters: BvhBuildParams, triangles: &[bvhkit::Triangle]) -> Build {
     Box::new(move || Box::new(Peer::cwbvh(parameters, &triangles)))
 }
 
-impl<B: Tree> Hierarchy for Peer<B> {
+impl<B: Shape> Hierarchy for Peer<B> {
     fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
         self.closest_hit(ray)
     }
 
     fn any_hit(&self, ray: &Ray) -> bool {
-        !self.bvh.misses(convert_ray(ray), |ray, slot| self.triangles[slot].intersect(ray))
+        self.any_hit(ray)
     }
 
     fn statistics(&self, rays: &[Ray]) -> Statistics {
@@ -57,16 +58,12 @@ impl<B: Tree> Hierarchy for Peer<B> {
 }
 
 /// What only this bench asks of its trees.
-trait Tree: Traversal {
-    fn misses(&self, ray: obvhs::ray::Ray, test: impl Test) -> bool;
+trait Shape: Traversal {
     /// The SAH cost and the depth.
     fn shape(&self) -> Option<(f64, usize)>;
 }
 
-impl Tree for Bvh2 {
-    fn misses(&self, ray: obvhs::ray::Ray, test: impl Test) -> bool {
-        self.ray_traverse_miss(ray, test)
-    }
+impl Shape for Bvh2 {
     fn shape(&self) -> Option<(f64, usize)> {
         let root = self.nodes.first()?;
         let (mut sah_cost, mut max_depth) = (0.0, 0);
@@ -86,10 +83,7 @@ impl Tree for Bvh2 {
     }
 }
 
-impl Tree for CwBvh {
-    fn misses(&self, ray: obvhs::ray::Ray, test: impl Test) -> bool {
-        self.ray_traverse_miss(ray, test)
-    }
+impl Shape for CwBvh {
     /// Eight children to a node: its cost would not compare with a binary tree's.
     fn shape(&self) -> Option<(f64, usize)> {
         None

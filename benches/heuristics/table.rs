@@ -1,13 +1,11 @@
 //! The closing table: every method side by side.
 
-use crate::agreement::Disagreements;
 use crate::check::Check;
 use crate::hierarchy::{Method, Statistics};
-use crate::timing::interleaved;
+use crate::shared::agreement::Disagreements;
+use crate::shared::columns::{decimal, table};
+use crate::shared::timing::{interleaved, mega_rays};
 use crate::workload::Workload;
-use bvhkit::Ray;
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
-use std::time::Duration;
 
 const HEADER: [&str; 14] = [
     "scene",
@@ -37,12 +35,7 @@ another triangle of the same t (tie), by other bits of t on the same triangle (t
 
 /// Measures each workload with each method and prints the table.
 pub fn print(workloads: impl Iterator<Item = Workload>, methods: &[Method], repetitions: usize) {
-    let mut table = Table::new();
-    table.load_style(presets::ASCII_MARKDOWN).set_content_arrangement(ContentArrangement::Disabled);
-    table.set_header(HEADER);
-    for column in table.column_iter_mut().skip(2) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
+    let mut table = table(HEADER, 2);
     for workload in workloads {
         table.add_rows(rows(&workload, methods, repetitions));
     }
@@ -63,36 +56,31 @@ fn rows(workload: &Workload, methods: &[Method], repetitions: usize) -> Vec<Vec<
         format!("{} of them naively", check.sample),
     ];
 
-    let build_times = interleaved(methods.len(), repetitions, |i| builds[i]());
+    let build_times = interleaved(methods.len(), repetitions, |_| (), |i| builds[i]());
     let mut hits = Vec::with_capacity(closest.len());
     let closest_times =
-        interleaved(methods.len(), repetitions, |i| built[i].closest_hits(closest, &mut hits));
+        interleaved(methods.len(), repetitions, |_| (), |i| built[i].closest_hits(closest, &mut hits));
     let mut hits = Vec::with_capacity(any.len());
-    let any_times = interleaved(methods.len(), repetitions, |i| built[i].any_hits(any, &mut hits));
+    let any_times = interleaved(methods.len(), repetitions, |_| (), |i| built[i].any_hits(any, &mut hits));
 
     let mut facts = facts.into_iter();
     let row = |i: usize| {
         let Statistics { sah_cost, max_depth, nodes_per_ray, tests_per_ray } = built[i].statistics(closest);
-        let decimal = |number: Option<f64>| number.map_or("-".into(), |number| format!("{number:.1}"));
         let mut row = vec![
             facts.next().unwrap_or_default(),
             methods[i].name.into(),
             format!("{:.1}", build_times[i].as_secs_f64() * 1e3),
-            decimal(sah_cost),
+            decimal(sah_cost, 1),
             max_depth.map_or("-".into(), |depth| depth.to_string()),
-            decimal(nodes_per_ray),
-            decimal(tests_per_ray),
-            mega_rays(closest, closest_times[i]),
-            mega_rays(any, any_times[i]),
+            decimal(nodes_per_ray, 1),
+            decimal(tests_per_ray, 1),
+            decimal(Some(mega_rays(closest.len(), closest_times[i])), 2),
+            decimal(Some(mega_rays(any.len(), any_times[i])), 2),
         ];
-        let Disagreements { hit_or_miss, triangle, tie, rounding } = check.from_ours[i];
+        let Disagreements { hit_or_miss, primitive, tie, rounding } = check.from_ours[i];
         row.push(format!("{} of {}", check.from_naive[i].visible(), check.sample));
-        row.extend([hit_or_miss, triangle, tie, rounding].map(|rays| rays.to_string()));
+        row.extend([hit_or_miss, primitive, tie, rounding].map(|rays| rays.to_string()));
         row
     };
     (0..methods.len()).map(row).collect()
-}
-
-fn mega_rays(rays: &[Ray], time: Duration) -> String {
-    format!("{:.2}", rays.len() as f64 / time.as_secs_f64() / 1e6)
 }

@@ -16,7 +16,7 @@ pub struct Workload {
 impl Workload {
     /// With `rays` rays of each kind.
     pub fn new(scene: &NamedScene, rays: usize) -> Self {
-        let Rays { primary, diffuse, shadow, random } = Rays::new(scene, rays);
+        let Rays { primary, diffuse, shadow, random } = Rays::new(&scene.triangles, scene, rays);
         Self {
             name: scene.name.clone(),
             triangles: scene.triangles.clone(),

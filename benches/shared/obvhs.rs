@@ -51,6 +51,10 @@ impl<B: Traversal> Peer<B> {
         self.closest_hit_by(ray, |ray, slot| self.triangles[slot].intersect(ray))
     }
 
+    pub fn any_hit(&self, ray: &Ray) -> bool {
+        !self.bvh.misses(convert_ray(ray), |ray, slot| self.triangles[slot].intersect(ray))
+    }
+
     /// With a triangle test of the caller's, given the triangle's place in the list.
     pub fn closest_hit_by(&self, ray: &Ray, test: impl Test) -> Option<Hit<f32, ()>> {
         let mut hit = RayHit::none();
@@ -66,6 +70,8 @@ impl<B: Traversal> Peer<B> {
 /// What its two kinds of tree have in common.
 pub trait Traversal {
     fn closest(&self, ray: obvhs::ray::Ray, hit: &mut RayHit, test: impl Test) -> bool;
+    /// Whether nothing is hit.
+    fn misses(&self, ray: obvhs::ray::Ray, test: impl Test) -> bool;
     /// The triangle's index by its place in the list.
     fn indices(&self) -> &[u32];
 }
@@ -78,6 +84,9 @@ macro_rules! traversal {
         impl Traversal for $tree {
             fn closest(&self, ray: obvhs::ray::Ray, hit: &mut RayHit, test: impl Test) -> bool {
                 self.ray_traverse(ray, hit, test)
+            }
+            fn misses(&self, ray: obvhs::ray::Ray, test: impl Test) -> bool {
+                self.ray_traverse_miss(ray, test)
             }
             fn indices(&self) -> &[u32] {
                 &self.primitive_indices

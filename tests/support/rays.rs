@@ -1,11 +1,24 @@
 //! Rays as renderers trace them, by kind: how well neighbours agree is what makes them quick or slow.
 
 use super::scenes::NamedScene;
-use bvhkit::{Bvh, Ray};
+use bvhkit::{Aabb, Bvh, Intersect, Ray, Triangle};
 use glam::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 use std::f32::consts::TAU;
+
+/// What rays set out from.
+pub trait Surface: Intersect<Scalar = f32> + Copy + Sync {
+    /// The normal where it was hit, on either side; none where there is none.
+    fn normal(&self, at: Vec3) -> Option<Vec3>;
+}
+
+impl Surface for Triangle {
+    fn normal(&self, _: Vec3) -> Option<Vec3> {
+        let [a, b, c] = [self.a, self.b, self.c].map(Vec3::from);
+        (b - a).cross(c - a).try_normalize()
+    }
+}
 
 /// Rays of each kind.
 pub struct Rays {
@@ -20,12 +33,13 @@ pub struct Rays {
 }
 
 impl Rays {
-    /// `n` primary and random rays; as many diffuse and shadow rays if the camera sees anything.
-    pub fn new(scene: &NamedScene, n: usize) -> Self {
+    /// `n` primary and random rays; as many diffuse and shadow rays if the camera sees anything. Among the scene's
+    /// triangles, or whatever is in their place.
+    pub fn new<P: Surface>(primitives: &[P], scene: &NamedScene, n: usize) -> Self {
         let mut rng = Pcg32::seed_from_u64(4);
         let primary = camera(scene, n);
-        let surface = seen(scene, &primary);
-        let aabb = scene.aabb();
+        let surface = seen(primitives, scene, &primary);
+        let aabb = primitives.iter().fold(Aabb::EMPTY, |aabb, primitive| aabb.union(primitive.aabb()));
         let (min, max) = (Vec3::from(aabb.min), Vec3::from(aabb.max));
 
         let diffuse = |&(point, normal): &(Vec3, Vec3)| {
@@ -71,22 +85,21 @@ fn camera(scene: &NamedScene, n: usize) -> Vec<Ray> {
 
 /// The points where rays first hit, each with the normal on the ray's side; lifted off the surface
 /// by a little, so that what sets out there does not hit where it came from.
-fn seen(scene: &NamedScene, rays: &[Ray]) -> Vec<(Vec3, Vec3)> {
-    let bvh = Bvh::build(&scene.triangles).expect("the scene's coordinates are finite");
+pub fn seen<P: Surface>(primitives: &[P], scene: &NamedScene, rays: &[Ray]) -> Vec<(Vec3, Vec3)> {
+    let bvh = Bvh::build(primitives.iter().copied()).expect("the scene's coordinates are finite");
     let lift = 1e-5 * scene.eye.distance(scene.target);
     let look = |ray: &Ray| {
         let hit = bvh.closest_hit(ray)?;
-        let triangle = &scene.triangles[hit.index];
-        let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(Vec3::from);
-        let normal = (b - a).cross(c - a).try_normalize()?;
+        let at = Vec3::from(ray.at(hit.t));
+        let normal = primitives[hit.index].normal(at)?;
         let normal = if normal.dot(ray.direction.into()) > 0.0 { -normal } else { normal };
-        Some((Vec3::from(ray.at(hit.t)) + lift * normal, normal))
+        Some((at + lift * normal, normal))
     };
     rays.iter().filter_map(look).collect()
 }
 
 /// A direction, evenly distributed over the unit sphere.
-fn sphere(rng: &mut Pcg32) -> Vec3 {
+pub fn sphere(rng: &mut Pcg32) -> Vec3 {
     let z = 1.0 - 2.0 * rng.random::<f32>();
     let (sin, cos) = (TAU * rng.random::<f32>()).sin_cos();
     let r = (1.0 - z * z).max(0.0).sqrt();

@@ -4,7 +4,7 @@ mod interior;
 mod soup;
 mod surface;
 
-use bvhkit::{Aabb, Primitive, Triangle};
+use bvhkit::Triangle;
 use glam::Vec3;
 
 /// A scene, and from where to look at it.
@@ -27,13 +27,6 @@ pub fn all(n: usize) -> Vec<NamedScene> {
     ]
     .map(|(name, triangles, eye, target)| NamedScene { name: name.into(), triangles, eye, target })
     .into()
-}
-
-impl NamedScene {
-    /// The box around all triangles.
-    pub fn aabb(&self) -> Aabb {
-        self.triangles.iter().fold(Aabb::EMPTY, |aabb, triangle| aabb.union(triangle.aabb()))
-    }
 }
 
 /// The two triangles of a quadrilateral whose corners are given in turn.

@@ -1,30 +1,27 @@
 //! Whether answers agree: with the naive reference's, and between hierarchies.
 
-use crate::hierarchy::{Hierarchy, Hit};
-use bvhkit::{Ray, Triangle, reference};
+use bvhkit::{Intersect, Ray, reference};
+
+/// Which primitive, and where.
+pub type Hit = bvhkit::Hit<f32, ()>;
+
+/// The same hit without what its primitive tells of it.
+pub fn bare<T>(hit: bvhkit::Hit<f32, T>) -> Hit {
+    Hit { t: hit.t, index: hit.index, payload: () }
+}
 
 /// The answers to both queries for each ray of a list.
+#[derive(Default)]
 pub struct Answers {
     pub closest: Vec<Option<Hit>>,
     pub any: Vec<bool>,
 }
 
 impl Answers {
-    pub fn of(hierarchy: &dyn Hierarchy, rays: &[Ray]) -> Self {
-        let mut answers = Self { closest: Vec::new(), any: Vec::new() };
-        hierarchy.closest_hits(rays, &mut answers.closest);
-        hierarchy.any_hits(rays, &mut answers.any);
-        answers
-    }
-
-    pub fn naive(triangles: &[Triangle], rays: &[Ray]) -> Self {
-        let closest = |ray| {
-            let hit = reference::closest_hit(triangles, ray)?;
-            Some(Hit { t: hit.t, index: hit.index, payload: () })
-        };
+    pub fn naive(primitives: &[impl Intersect<Scalar = f32>], rays: &[Ray]) -> Self {
         Self {
-            closest: rays.iter().map(closest).collect(),
-            any: rays.iter().map(|ray| reference::any_hit(triangles, ray)).collect(),
+            closest: rays.iter().map(|ray| reference::closest_hit(primitives, ray).map(bare)).collect(),
+            any: rays.iter().map(|ray| reference::any_hit(primitives, ray)).collect(),
         }
     }
 }
@@ -34,21 +31,26 @@ impl Answers {
 pub struct Disagreements {
     /// One says hit, the other miss, in either query.
     pub hit_or_miss: usize,
-    /// Another triangle, with another t.
-    pub triangle: usize,
-    /// Another triangle of the same t: only the order among equals differs.
+    /// Another primitive, with another t.
+    pub primitive: usize,
+    /// Another primitive of the same t: only the order among equals differs.
     pub tie: usize,
-    /// The same triangle with a t of other bits: rounding.
+    /// The same primitive with a t of other bits: rounding.
     pub rounding: usize,
 }
 
 impl Disagreements {
     /// Those that an image would show.
     pub fn visible(&self) -> usize {
-        self.hit_or_miss + self.triangle
+        self.hit_or_miss + self.primitive
     }
 
-    pub fn count(triangles: &[Triangle], rays: &[Ray], expected: &Answers, actual: &Answers) -> Self {
+    pub fn count(
+        primitives: &[impl Intersect<Scalar = f32>],
+        rays: &[Ray],
+        expected: &Answers,
+        actual: &Answers,
+    ) -> Self {
         let mut counts = Self::default();
         for (i, ray) in rays.iter().enumerate() {
             if expected.any[i] != actual.any[i] {
@@ -62,9 +64,9 @@ impl Disagreements {
                 }
                 (Some(a), Some(b)) => {
                     // Whose rounding differs cannot be asked for a tie: we judge by our own.
-                    let other = reference::closest_hit(&triangles[b.index..=b.index], ray);
+                    let other = reference::closest_hit(&primitives[b.index..=b.index], ray);
                     let tie = other.is_some_and(|other| other.t == a.t);
-                    *(if tie { &mut counts.tie } else { &mut counts.triangle }) += 1;
+                    *(if tie { &mut counts.tie } else { &mut counts.primitive }) += 1;
                 }
                 _ => counts.hit_or_miss += 1,
             }

@@ -1,0 +1,112 @@
+//! Who is measured: families of hierarchies over the same primitives, to which the same rays are put.
+
+use crate::kinds::{self, Kind};
+use crate::primitives::{discs, spheres};
+use crate::shared::agreement::{Answers, Disagreements, Hit, bare};
+use crate::shared::obvhs::{Peer, Traversal, convert};
+use crate::support::scenes::NamedScene;
+use crate::tracer::Tracer;
+use bvhkit::{Bvh, Fast, Intersect, Precise, Ray, Traverse, Tree, Triangle, WideTree, reference};
+use obvhs::BvhBuildParams;
+use std::rc::Rc;
+
+pub struct Family {
+    pub primitives: &'static str,
+    pub kinds: Rc<[Kind]>,
+    pub naive: Box<dyn Naive>,
+    /// The first is ours.
+    pub members: Vec<Member>,
+}
+
+pub struct Member {
+    pub layout: &'static str,
+    /// Whose answers are promised to be the naive reference's; or a peer's.
+    pub ours: bool,
+    pub tracer: Box<dyn Tracer>,
+}
+
+/// The primitives without a tree.
+pub trait Naive {
+    fn count(&self) -> usize;
+    fn answers(&self, rays: &[Ray]) -> Answers;
+    fn all_hits(&self, ray: &Ray) -> Vec<Hit>;
+    fn disagreements(&self, rays: &[Ray], expected: &Answers, actual: &Answers) -> Disagreements;
+}
+
+impl<P: Intersect<Scalar = f32>> Naive for Vec<P> {
+    fn count(&self) -> usize {
+        self.len()
+    }
+    fn answers(&self, rays: &[Ray]) -> Answers {
+        Answers::naive(self, rays)
+    }
+    fn all_hits(&self, ray: &Ray) -> Vec<Hit> {
+        reference::hits(self, ray).into_iter().map(bare).collect()
+    }
+    fn disagreements(&self, rays: &[Ray], expected: &Answers, actual: &Answers) -> Disagreements {
+        Disagreements::count(self, rays, expected, actual)
+    }
+}
+
+/// Every layout over the triangles that are quickest to test, where layouts count for most; the default layout over
+/// everything else. More would be long in compiling and tell little.
+pub fn all(scene: &NamedScene, rays: usize) -> Vec<Family> {
+    let triangles = &scene.triangles;
+    let kinds: Rc<[Kind]> = kinds::all(triangles, scene, rays).into();
+    let fast: Vec<_> = triangles.iter().copied().map(Fast).collect();
+    let precise: Vec<_> = triangles.iter().copied().map(Precise).collect();
+    let (spheres, discs) = (spheres(triangles), discs(triangles));
+    let (around, among) = (kinds::all(&spheres, scene, rays), kinds::all(&discs, scene, rays));
+    let layouts = vec![
+        ours::<_, WideTree<f32, 4>>("wide 4", &fast),
+        ours::<_, WideTree<f32, 8>>("wide 8", &fast),
+        ours::<_, WideTree<f32, 16>>("wide 16", &fast),
+        ours::<_, Tree>("binary", &fast),
+        peer("obvhs BVH2", triangles, Peer::bvh2),
+        peer("obvhs CWBVH", triangles, Peer::cwbvh),
+    ];
+    vec![
+        family("Fast", Rc::clone(&kinds), fast, layouts),
+        default_layout("Watertight", Rc::clone(&kinds), triangles.clone()),
+        default_layout("Precise", kinds, precise),
+        default_layout("spheres", around.into(), spheres),
+        default_layout("discs", among.into(), discs),
+    ]
+}
+
+fn family<P: Intersect<Scalar = f32> + 'static>(
+    name: &'static str,
+    kinds: Rc<[Kind]>,
+    primitives: Vec<P>,
+    members: Vec<Member>,
+) -> Family {
+    Family { primitives: name, kinds, naive: Box::new(primitives), members }
+}
+
+fn default_layout<P>(name: &'static str, kinds: Rc<[Kind]>, primitives: Vec<P>) -> Family
+where
+    P: Intersect<Scalar = f32, Payload: Send> + Copy + Send + Sync + 'static,
+{
+    let member = ours::<_, WideTree>("wide 16", &primitives);
+    family(name, kinds, primitives, vec![member])
+}
+
+fn ours<P, L>(layout: &'static str, primitives: &[P]) -> Member
+where
+    P: Intersect<Scalar = f32, Payload: Send> + Copy + Send + Sync + 'static,
+    L: Traverse<P> + Sync + 'static,
+{
+    let builder = Bvh::builder().layout::<L>();
+    let bvh = builder.build(primitives.iter().copied()).expect("the coordinates are finite");
+    Member { layout, ours: true, tracer: Box::new(bvh) }
+}
+
+/// By its middle preset.
+fn peer<B: Traversal + Sync + 'static>(
+    layout: &'static str,
+    triangles: &[Triangle],
+    build: fn(BvhBuildParams, &[obvhs::triangle::Triangle]) -> Peer<B>,
+) -> Member {
+    let peer = build(BvhBuildParams::medium_build(), &convert(triangles));
+    Member { layout, ours: false, tracer: Box::new(peer) }
+}

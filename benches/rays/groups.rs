@@ -1,0 +1,26 @@
+//! Criterion's groups: one for each kind of ray and scene, on one thread and in natural order.
+
+use crate::family::Family;
+use crate::shared::criterion::flat_group;
+use crate::tracer::Way;
+use criterion::{Criterion, Throughput};
+
+pub fn measure(criterion: &mut Criterion, scene: &str, families: &[Family]) {
+    for (number, kind) in families[0].kinds.iter().enumerate() {
+        let name = format!("{}/{scene}", kind.name);
+        let mut group = flat_group(criterion, name, kind.natural.len());
+        for family in families {
+            let kind = &family.kinds[number];
+            group.throughput(Throughput::Elements(kind.natural.len() as u64));
+            for member in &family.members {
+                for way in Way::ALL {
+                    if let Some(mut job) = member.tracer.job(kind.query, way, &kind.natural) {
+                        let name = format!("{} {} {}", family.primitives, member.layout, way.name());
+                        group.bench_function(name, |bencher| bencher.iter(|| job(None)));
+                    }
+                }
+            }
+        }
+        group.finish();
+    }
+}

@@ -1,0 +1,63 @@
+//! Traces rays of every kind, one by one and in batches, on one thread and on all, through every layout and over
+//! several primitives, and through `obvhs`; on procedural scenes and, if the environment variable `BVHKIT_SCENE` names
+//! a file, on that.
+//!
+//! `cargo bench --bench rays` measures with criterion, then prints one table of everything side by side. No time is taken
+//! on a scene before the answers there were compared with the naive reference's. A filter, such as
+//! `-- shadow/interior`, applies to criterion alone: one that matches nothing leaves the table. `RAYON_NUM_THREADS` tells how
+//! many threads all are; of 1, columns are not repeated.
+
+mod check;
+mod family;
+mod groups;
+mod kinds;
+mod ours;
+mod peer;
+mod primitives;
+mod speed;
+mod table;
+mod tracer;
+
+#[path = "../shared/mod.rs"]
+mod shared;
+#[path = "../../tests/support/mod.rs"]
+mod support;
+
+/// Seen from outside, from inside, and without a surface: what lies between tells little more of a layout.
+const SCENES: [&str; 3] = ["closed-mesh", "interior", "clustered-soup"];
+
+/// How much to do.
+struct Extent {
+    /// Triangles of the procedural scenes.
+    size: usize,
+    /// Rays of each kind.
+    rays: usize,
+    /// Tests of one primitive that the naive reference may spend on each family of a scene: a second or so.
+    naive_tests: usize,
+    /// How often the table's measurements are repeated.
+    repetitions: usize,
+}
+
+const BENCH: Extent = Extent { size: 100_000, rays: 1 << 14, naive_tests: 100_000_000, repetitions: 5 };
+
+/// Just enough to see that everything runs; more rays than a chunk of a batch, to have some of them trace in turns.
+const TEST: Extent = Extent { size: 300, rays: 1100, naive_tests: 2_000_000, repetitions: 1 };
+
+fn main() -> anyhow::Result<()> {
+    let extent = if shared::extent::is_bench() { BENCH } else { TEST };
+    let procedural = support::scenes::all(extent.size).into_iter();
+    let scenes = procedural.filter(|scene| SCENES.contains(&&*scene.name)).chain(shared::file::scene()?);
+
+    let mut criterion = shared::criterion::brief_criterion();
+    let mut table = table::empty();
+    for scene in scenes {
+        let families = family::all(&scene, extent.rays);
+        let checks: Vec<_> =
+            families.iter().map(|family| check::check(&scene.name, family, extent.naive_tests)).collect();
+        groups::measure(&mut criterion, &scene.name, &families);
+        table::add(&mut table, &scene, &families, &checks, extent.repetitions);
+    }
+    criterion.final_summary();
+    table::print(&table);
+    Ok(())
+}

@@ -1,0 +1,19 @@
+//! Tables as the benches print them.
+
+use comfy_table::{CellAlignment, ContentArrangement, Row, Table, presets};
+
+/// An empty table, which Markdown reads too: words in the first columns, numbers in the others.
+pub fn table(header: impl Into<Row>, words: usize) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::ASCII_MARKDOWN).set_content_arrangement(ContentArrangement::Disabled);
+    table.set_header(header);
+    for column in table.column_iter_mut().skip(words) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+/// A number with so many decimals, or a dash for what is not known.
+pub fn decimal(number: Option<f64>, decimals: usize) -> String {
+    number.map_or("-".into(), |number| format!("{number:.decimals$}"))
+}
