@@ -1,7 +1,7 @@
 //! The options of a build, and what may be wrong with its input.
 
 use crate::build::heuristic::{BinnedSah, BuildNode, Heuristic, Split};
-use crate::build::{Flaw, PrimRef, Rules, build_tree};
+use crate::build::{Flaw, Optimise, PrimRef, Rules, build_tree};
 use crate::bvh::Bvh;
 use crate::geometry::Scalar;
 use crate::layout::{Layout, WideTree};
@@ -137,6 +137,7 @@ pub struct Builder<P: Primitive, H = Quality, L = WideTree<<P as Primitive>::Sca
     max_leaf_size: Option<usize>,
     threads: Option<usize>,
     on_invalid: OnInvalid,
+    optimise: Option<Optimise>,
     instruction_set: Option<InstructionSet>,
     result: PhantomData<fn() -> (P, L)>,
 }
@@ -154,6 +155,7 @@ impl<P: Primitive, L> Builder<P, Quality, L> {
             max_leaf_size: None,
             threads: None,
             on_invalid: OnInvalid::default(),
+            optimise: None,
             instruction_set: None,
             result: PhantomData,
         }
@@ -193,8 +195,8 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// One of [`heuristic`](crate::heuristic)'s, or your own, in place of the one chosen so far.
     #[must_use]
     pub fn heuristic<G: Heuristic<P::Scalar>>(self, heuristic: G) -> Builder<P, G, L> {
-        let Self { max_leaf_size, threads, on_invalid, instruction_set, result, .. } = self;
-        Builder { heuristic, max_leaf_size, threads, on_invalid, instruction_set, result }
+        let Self { max_leaf_size, threads, on_invalid, optimise, instruction_set, result, .. } = self;
+        Builder { heuristic, max_leaf_size, threads, on_invalid, optimise, instruction_set, result }
     }
 
     /// How the hierarchy lies in memory, in place of the [`WideTree`] of 16: another [`Layout`].
@@ -208,8 +210,16 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// ```
     #[must_use]
     pub fn layout<M: Layout<P>>(self) -> Builder<P, H, M> {
-        let Self { heuristic, max_leaf_size, threads, on_invalid, instruction_set, .. } = self;
-        Builder { heuristic, max_leaf_size, threads, on_invalid, instruction_set, result: PhantomData }
+        let Self { heuristic, max_leaf_size, threads, on_invalid, optimise, instruction_set, .. } = self;
+        Builder {
+            heuristic,
+            max_leaf_size,
+            threads,
+            on_invalid,
+            optimise,
+            instruction_set,
+            result: PhantomData,
+        }
     }
 
     /// What queries are computed with, [`InstructionSet::best`] unless set: to compare and to test.
@@ -234,6 +244,12 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {
         Self { threads: Some(threads), ..self }
+    }
+
+    /// Makes the tree better once it is built, whatever the heuristic.
+    #[must_use]
+    pub fn optimise(self, optimise: Optimise) -> Self {
+        Self { optimise: Some(optimise), ..self }
     }
 
     /// What to do with invalid primitives, [`OnInvalid::Reject`] unless set.
@@ -270,8 +286,12 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         let References { mut valid, skipped } = self.references(primitives)?;
         let block_size = L::BLOCK_SIZE;
         let max_leaf_size = self.max_leaf_size.unwrap_or(block_size.max(4));
-        let tree = build_tree(&mut valid, &Rules { heuristic: &self.heuristic, max_leaf_size, block_size });
+        let mut tree =
+            build_tree(&mut valid, &Rules { heuristic: &self.heuristic, max_leaf_size, block_size });
         drop(valid);
+        if let Some(optimise) = &self.optimise {
+            tree.optimise(optimise);
+        }
         let layout = L::lay_out(tree, primitives).ok_or(BuildError::TooLarge)?;
         Ok((layout, skipped))
     }

@@ -1,13 +1,14 @@
 //! The hierarchy that owns its primitives and answers queries.
 
 use crate::build::heuristic::Heuristic;
+use crate::build::{Gain, Optimise};
 use crate::builder::{BuildError, Builder, Quality};
 use crate::geometry::{Aabb, Ray};
 use crate::layout::{Layout, WideTree};
 use crate::primitive::{Intersect, Primitive};
 use crate::query::{Any, Ask, Closest, Hit, Hits, Recorder, Traverse, ask_all};
 use crate::simd::{Backend, InstructionSet};
-use crate::tree::{InvariantError, TreeReport, check};
+use crate::tree::{InvariantError, Tree, TreeReport, check};
 use alloc::vec::Vec;
 use core::fmt;
 use core::marker::PhantomData;
@@ -142,6 +143,35 @@ impl<P: Primitive, L: Layout<P>> Bvh<P, L> {
         let is_skipped = |index: usize| self.skipped.binary_search(&(index as u32)).is_ok();
         let indices = (0..self.primitives.len()).filter(|&index| !is_skipped(index));
         check(&self.layout, indices, |index| self.primitives[index].aabb())
+    }
+}
+
+impl<P: Primitive> Bvh<P, Tree<P::Scalar>> {
+    /// Makes the tree better: see [`Tree::optimise`]. On the calling thread's pool.
+    pub fn optimise(&mut self, optimise: &Optimise) -> Gain {
+        self.layout.optimise(optimise)
+    }
+
+    /// The same hierarchy in another layout.
+    ///
+    /// ```
+    /// use bvhkit::heuristic::Median;
+    /// use bvhkit::{Bvh, Optimise, Ray, Sphere, Tree};
+    ///
+    /// let spheres: Vec<Sphere> = (0..100).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)).collect();
+    /// let mut binary = Bvh::builder().heuristic(Median).layout::<Tree>().build(&spheres)?;
+    /// binary.optimise(&Optimise::default());
+    /// let wide: Bvh<&Sphere> = binary.into_layout()?;
+    /// assert_eq!(wide.closest_hit(&Ray::new([7.0, -1.0, 0.0], [0.0, 1.0, 0.0])).unwrap().index, 7);
+    /// # Ok::<(), bvhkit::BuildError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`BuildError::TooLarge`].
+    pub fn into_layout<L: Layout<P>>(self) -> Result<Bvh<P, L>, BuildError> {
+        let Self { layout, backend, primitives, skipped } = self;
+        let layout = L::lay_out(layout, &primitives).ok_or(BuildError::TooLarge)?;
+        Ok(Bvh { layout, backend, primitives, skipped })
     }
 }
 

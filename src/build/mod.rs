@@ -10,8 +10,10 @@
 mod divide;
 mod driver;
 pub mod heuristic;
+mod optimise;
 mod reference;
 
 pub(crate) use divide::Rules;
 pub(crate) use driver::build_tree;
+pub use optimise::{Gain, Optimise};
 pub use reference::{Flaw, PrimRef};

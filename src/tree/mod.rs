@@ -7,6 +7,7 @@ pub use check::InvariantError;
 pub(crate) use check::check;
 pub use report::{LeafSizes, TreeReport};
 
+use crate::build::{Gain, Optimise};
 use crate::geometry::{Aabb, Scalar};
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -95,6 +96,23 @@ impl<S: Scalar> Tree<S> {
     /// The box around everything; [`Aabb::EMPTY`] if there is nothing.
     pub fn aabb(&self) -> Aabb<S> {
         self.aabb
+    }
+
+    /// Makes it better by reinsertion; queries have the same answers.
+    ///
+    /// ```
+    /// use bvhkit::heuristic::Median;
+    /// use bvhkit::{Bvh, Optimise, Sphere, Tree};
+    ///
+    /// let spheres: Vec<Sphere> =
+    ///     (0..1000).map(|i| Sphere::new([(i * i % 97) as f32, (i % 31) as f32, 0.0], 1.0)).collect();
+    /// let mut bvh = Bvh::builder().heuristic(Median).layout::<Tree>().build(&spheres)?;
+    /// let gain = bvh.optimise(&Optimise { share: 0.1, rounds: 4 });
+    /// assert!(gain.moves > 0 && gain.after < gain.before);
+    /// # Ok::<(), bvhkit::BuildError>(())
+    /// ```
+    pub fn optimise(&mut self, optimise: &Optimise) -> Gain {
+        optimise.run(self)
     }
 
     /// Its shape and estimated cost.

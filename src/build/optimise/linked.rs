@@ -1,0 +1,202 @@
+//! The tree with a way up.
+
+use super::search::Move;
+use crate::geometry::{Aabb, Scalar};
+use crate::tree::{Child, MAX_DEPTH, Node, Tree};
+use alloc::vec::Vec;
+
+/// A tree whose nodes, inner ones first, then leaves, know their parents, boxes and heights.
+pub(super) struct Linked<S> {
+    nodes: Vec<LinkedNode<S>>,
+    /// Of inner nodes.
+    children: Vec<[u32; 2]>,
+    /// Slots of leaves.
+    leaves: Vec<Child>,
+    /// 1 / the largest extent.
+    scale: S,
+}
+
+#[derive(Clone, Copy)]
+struct LinkedNode<S> {
+    aabb: Aabb<S>,
+    parent: u32,
+    /// Of the longest path down to a leaf, in steps.
+    height: u32,
+}
+
+impl<S: Scalar> Linked<S> {
+    /// The root, an inner node.
+    pub const ROOT: u32 = 0;
+
+    /// None if there are fewer than three leaves: nothing could be moved.
+    pub fn new(tree: &Tree<S>) -> Option<Self> {
+        let inner = tree.nodes.len();
+        if inner < 2 {
+            return None;
+        }
+        let unknown = LinkedNode { aabb: tree.aabb, parent: u32::MAX, height: 0 };
+        let mut linked = Self {
+            nodes: alloc::vec![unknown; 2 * inner + 1],
+            children: Vec::with_capacity(inner),
+            leaves: Vec::with_capacity(inner + 1),
+            scale: tree.aabb.area_scale(),
+        };
+        for (parent, node) in (0..).zip(&tree.nodes) {
+            let mut link = |side: usize| {
+                let child = match node.children[side] {
+                    leaf if leaf.is_leaf() => {
+                        linked.leaves.push(leaf);
+                        (inner + linked.leaves.len() - 1) as u32
+                    }
+                    inner => inner.first,
+                };
+                linked.nodes[child as usize] = LinkedNode { aabb: node.aabb(side), parent, height: 0 };
+                child
+            };
+            let children = [link(0), link(1)];
+            linked.children.push(children);
+        }
+        // Children lie behind their parents.
+        for node in (0..inner).rev() {
+            linked.nodes[node].height = linked.height_above(linked.children[node]);
+        }
+        Some(linked)
+    }
+
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    #[inline(always)]
+    pub fn aabb(&self, node: u32) -> &Aabb<S> {
+        &self.nodes[node as usize].aabb
+    }
+
+    #[inline(always)]
+    pub fn area_of(&self, aabb: &Aabb<S>) -> S {
+        aabb.scaled_half_area(self.scale)
+    }
+
+    #[inline(always)]
+    pub fn area(&self, node: u32) -> S {
+        self.area_of(self.aabb(node))
+    }
+
+    #[inline(always)]
+    pub fn parent(&self, node: u32) -> u32 {
+        self.nodes[node as usize].parent
+    }
+
+    /// None for a leaf.
+    #[inline(always)]
+    pub fn children(&self, node: u32) -> Option<[u32; 2]> {
+        self.children.get(node as usize).copied()
+    }
+
+    /// The other child of the same parent.
+    #[inline(always)]
+    pub fn sibling(&self, node: u32) -> u32 {
+        let [left, right] = self.children[self.parent(node) as usize];
+        if left == node { right } else { left }
+    }
+
+    /// The sum of the inner nodes' areas, in units of the root's.
+    pub fn cost(&self) -> f64 {
+        let area = |node: &LinkedNode<S>| self.area_of(&node.aabb).to_f64();
+        let root = area(&self.nodes[0]);
+        let sum: f64 = self.nodes[..self.children.len()].iter().map(area).sum();
+        if root > 0.0 { sum / root } else { self.children.len() as f64 }
+    }
+
+    fn height_above(&self, children: [u32; 2]) -> u32 {
+        let height = |child: u32| self.nodes[child as usize].height;
+        1 + height(children[0]).max(height(children[1]))
+    }
+
+    /// Moves a node beside its new sibling, unless one of those concerned was touched before, or that would make a circle
+    /// or too long a path. Tells whether it did.
+    pub fn apply(&mut self, found: &Move<S>, touched: &mut [bool]) -> bool {
+        let Move { node, beside, .. } = *found;
+        let (parent, sibling) = (self.parent(node), self.sibling(node));
+        let (above, target) = (self.parent(parent), self.parent(beside));
+        let concerned = [node, parent, sibling, above, beside, target];
+        if concerned.iter().any(|&node| touched[node as usize]) {
+            return false;
+        }
+        let Some(depth) = self.depth_outside(beside, node) else { return false };
+        let height = self.height_above([node, beside]) as usize;
+        if depth + height > MAX_DEPTH {
+            return false;
+        }
+        for node in concerned {
+            touched[node as usize] = true;
+        }
+        // The parent goes along: the sibling takes its place.
+        self.replace(above, parent, sibling);
+        self.replace(target, beside, parent);
+        self.children[parent as usize] = [beside, node];
+        self.nodes[beside as usize].parent = parent;
+        self.nodes[node as usize].parent = parent;
+        self.refit(above);
+        self.refit(parent);
+        true
+    }
+
+    /// How far a place is from the root; none if it lies below a node.
+    fn depth_outside(&self, mut place: u32, node: u32) -> Option<usize> {
+        let mut depth = 0;
+        while place != Self::ROOT {
+            if place == node {
+                return None;
+            }
+            place = self.parent(place);
+            depth += 1;
+        }
+        Some(depth)
+    }
+
+    fn replace(&mut self, parent: u32, child: u32, other: u32) {
+        let children = &mut self.children[parent as usize];
+        children[usize::from(children[1] == child)] = other;
+        self.nodes[other as usize].parent = parent;
+    }
+
+    /// Boxes and heights from a node up to the root.
+    fn refit(&mut self, mut node: u32) {
+        loop {
+            let children = self.children[node as usize];
+            let aabb = self.aabb(children[0]).union(*self.aabb(children[1]));
+            let height = self.height_above(children);
+            let refitted = &mut self.nodes[node as usize];
+            (refitted.aabb, refitted.height) = (aabb, height);
+            if node == Self::ROOT {
+                break;
+            }
+            node = refitted.parent;
+        }
+    }
+
+    /// Writes nodes and slots depth first.
+    pub fn write(&self, tree: &mut Tree<S>) {
+        let mut nodes: Vec<Node<S>> = Vec::with_capacity(self.children.len());
+        let mut indices = Vec::with_capacity(tree.indices.len());
+        let mut open: Vec<(Option<(usize, usize)>, u32)> = alloc::vec![(None, Self::ROOT)];
+        while let Some((parent, node)) = open.pop() {
+            let child = if let Some(children) = self.children(node) {
+                let index = nodes.len();
+                nodes.push(Node::new(children.map(|child| *self.aabb(child))));
+                open.extend([1, 0].map(|side| (Some((index, side)), children[side])));
+                Child::inner(index)
+            } else {
+                let slots = self.leaves[node as usize - self.children.len()].slots();
+                let first = indices.len();
+                indices.extend_from_slice(&tree.indices[slots]);
+                Child::leaf(first..indices.len())
+            };
+            if let Some((parent, side)) = parent {
+                nodes[parent].children[side] = child;
+            }
+        }
+        (tree.nodes, tree.indices) = (nodes, indices);
+    }
+}
