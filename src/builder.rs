@@ -5,13 +5,14 @@ use crate::build::{Flaw, Optimise, PrimRef, Rules, build_tree};
 use crate::bvh::Bvh;
 use crate::geometry::Scalar;
 use crate::layout::{Layout, WideTree};
-use crate::parallel::{ThreadPoolError, in_pool};
+use crate::parallel::{self, ThreadPoolError, in_pool};
 use crate::primitive::Primitive;
 use crate::simd::{Backend, InstructionSet};
 use crate::tree::Tree;
 use alloc::vec::Vec;
 use core::fmt;
 use core::marker::PhantomData;
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// How much time a build may take for how quick a tree.
 ///
@@ -283,12 +284,10 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
 
     /// The layout, and the indices of skipped primitives.
     fn lay_out(&self, primitives: &[P]) -> Result<(L, Vec<u32>), BuildError> {
-        let References { mut valid, skipped } = self.references(primitives)?;
+        let References { valid, skipped } = self.references(primitives)?;
         let block_size = L::BLOCK_SIZE;
         let max_leaf_size = self.max_leaf_size.unwrap_or(block_size.max(4));
-        let mut tree =
-            build_tree(&mut valid, &Rules { heuristic: &self.heuristic, max_leaf_size, block_size });
-        drop(valid);
+        let mut tree = build_tree(valid, &Rules { heuristic: &self.heuristic, max_leaf_size, block_size });
         if let Some(optimise) = &self.optimise {
             tree.optimise(optimise);
         }
@@ -297,16 +296,26 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     }
 
     fn references(&self, primitives: &[P]) -> Result<References<P::Scalar>, BuildError> {
-        let (mut valid, mut skipped) = (Vec::with_capacity(primitives.len()), Vec::new());
-        for (index, primitive) in (0..).zip(primitives) {
-            let reference = PrimRef::new(primitive.aabb(), index);
-            match (reference.flaw(), self.on_invalid) {
-                (None, _) => valid.push(reference),
-                (Some(_), OnInvalid::Skip) => skipped.push(index),
-                (Some(flaw), OnInvalid::Reject) => {
-                    return Err(BuildError::InvalidPrimitive { index: index as usize, flaw });
+        let is_flawed = AtomicBool::new(false);
+        let mut valid = parallel::collect(primitives, |index, primitive| {
+            let reference = PrimRef::new(primitive.aabb(), index as u32);
+            if reference.flaw().is_some() {
+                is_flawed.store(true, Relaxed);
+            }
+            reference
+        });
+        let mut skipped = Vec::new();
+        if is_flawed.into_inner() {
+            let flaws = valid.iter().filter_map(|reference| Some((reference.index, reference.flaw()?)));
+            match self.on_invalid {
+                OnInvalid::Skip => skipped = flaws.map(|(index, _)| index).collect(),
+                OnInvalid::Reject => {
+                    if let Some((index, flaw)) = flaws.min_by_key(|&(index, _)| index) {
+                        return Err(BuildError::InvalidPrimitive { index: index as usize, flaw });
+                    }
                 }
             }
+            valid.retain(|reference| reference.flaw().is_none());
         }
         Ok(References { valid, skipped })
     }

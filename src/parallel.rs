@@ -35,6 +35,27 @@ pub(crate) fn map<T, R>(items: Vec<T>, f: impl Fn(T) -> R) -> Vec<R> {
     items.into_iter().map(f).collect()
 }
 
+/// What `f` makes of each item and its number.
+#[cfg(feature = "rayon")]
+pub(crate) fn collect<T: Sync, R: Send>(items: &[T], f: impl Fn(usize, &T) -> R + Sync) -> Vec<R> {
+    use rayon::prelude::*;
+    let made = |(index, item)| f(index, item);
+    if items.len() < FEW {
+        return items.iter().enumerate().map(made).collect();
+    }
+    items.par_iter().enumerate().with_min_len(FEW).map(made).collect()
+}
+
+/// What `f` makes of each item and its number.
+#[cfg(not(feature = "rayon"))]
+pub(crate) fn collect<T, R>(items: &[T], f: impl Fn(usize, &T) -> R) -> Vec<R> {
+    items.iter().enumerate().map(|(index, item)| f(index, item)).collect()
+}
+
+/// Items for which no other thread is woken.
+#[cfg(feature = "rayon")]
+const FEW: usize = 1 << 12;
+
 /// Runs `f` where [`map`] has `threads` threads; with `None`, those of the pool it is called in.
 #[cfg(feature = "rayon")]
 pub(crate) fn in_pool<R: Send>(

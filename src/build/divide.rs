@@ -1,7 +1,8 @@
-//! One step of the build: a set of references becomes a leaf or two sets.
+//! One step of the build: a set of references becomes a leaf or two sets, each with a part of the memory.
 
+use super::cut::Cut;
 use super::heuristic::{BuildNode, Heuristic, Split};
-use super::reference::{PrimRef, bounds};
+use super::reference::{PrimRef, bounds, centroids};
 use crate::geometry::{Aabb, Axis, Scalar};
 use crate::tree::MAX_DEPTH;
 
@@ -12,53 +13,111 @@ pub(crate) struct Rules<'h, H: ?Sized> {
     pub block_size: usize,
 }
 
-impl<H: ?Sized> Rules<'_, H> {
-    /// A node as heuristics see it.
-    fn node<'r, S>(&self, references: &'r [PrimRef<S>], aabb: Aabb<S>, depth: usize) -> BuildNode<'r, S> {
-        let Self { max_leaf_size, block_size, .. } = *self;
-        BuildNode { aabb, references, depth, max_leaf_size, block_size }
+/// A set of references in memory that has room for more.
+pub(super) struct Set<'r, S> {
+    pub memory: &'r mut [PrimRef<S>],
+    pub len: usize,
+    /// The box around them.
+    pub aabb: Aabb<S>,
+    pub depth: usize,
+}
+
+impl<S> Set<'_, S> {
+    pub fn references(&self) -> &[PrimRef<S>] {
+        &self.memory[..self.len]
     }
 }
 
-/// Two non-empty sides: the references before `middle`, and from it on.
-pub(super) struct Division<S> {
-    pub middle: usize,
-    pub sides: [Aabb<S>; 2],
-}
-
-/// Reorders `references`, whose box is `aabb`, into the two sides of a split, or answers `None` for a leaf.
-///
-/// The depth bound is the invariant `depth + ceil(log2(n)) <= MAX_DEPTH` of every node. It holds at
-/// the root (at most 2^32 primitives, 32 <= 64); a proposed split is taken only if it holds for both
-/// sides; equal halves, which replace it otherwise, keep it, since each is one level deeper and
-/// has one binary digit less.
-pub(super) fn divide<S: Scalar, H: Heuristic<S> + ?Sized>(
-    references: &mut [PrimRef<S>],
-    aabb: &Aabb<S>,
-    depth: usize,
-    rules: &Rules<'_, H>,
-) -> Option<Division<S>> {
-    let n = references.len();
-    if n < 2 {
-        return None;
-    }
-    let middle = match rules.heuristic.split(&rules.node(references, *aabb, depth)) {
-        Split::Leaf if n <= rules.max_leaf_size => return None,
-        Split::Leaf => None,
-        Split::Plane { axis, position } => Some(partition(references, axis, position)),
-        Split::Count { axis, left } if left > 0 && left < n => Some(select(references, axis, left)),
-        Split::Count { .. } => None,
-    };
-    let fits = |n: usize| n > 0 && depth + 1 + ceil_log2(n) <= MAX_DEPTH;
-    let middle = match middle {
-        Some(middle) if fits(middle) && fits(n - middle) => middle,
-        _ => {
-            let axis = rules.node(references, *aabb, depth).centroids().longest_axis();
-            select(references, axis, n / 2)
+impl<'r, S: Scalar> Set<'r, S> {
+    /// Divides the set in two, or answers `Err` with itself if it is to be a leaf. `scene` is the box around everything.
+    ///
+    /// The depth bound is the invariant `depth + ceil(log2(n)) <= MAX_DEPTH` of every node. It holds at
+    /// the root (at most 2^32 references, 32 <= 64); a proposed split is taken only if it holds for both
+    /// sides; equal halves, which replace it otherwise, keep it, since each is one level deeper and
+    /// has one binary digit less.
+    pub fn divide<H: Heuristic<S> + ?Sized>(
+        self,
+        rules: &Rules<'_, H>,
+        scene: &Aabb<S>,
+    ) -> Result<[Self; 2], Self> {
+        let n = self.len;
+        if n < 2 {
+            return Err(self);
         }
-    };
-    let (left, right) = references.split_at(middle);
-    Some(Division { middle, sides: [bounds(left), bounds(right)] })
+        let proposal = rules.heuristic.split(&BuildNode {
+            aabb: self.aabb,
+            references: self.references(),
+            depth: self.depth,
+            max_leaf_size: rules.max_leaf_size,
+            block_size: rules.block_size,
+            scene: *scene,
+            spare: self.memory.len() - n,
+        });
+        let fits = |n: usize| n > 0 && self.depth + 1 + ceil_log2(n) <= MAX_DEPTH;
+        let room = self.memory.len();
+        let references = &mut self.memory[..n];
+        let middle = match proposal {
+            Split::Leaf if n <= rules.max_leaf_size => return Err(self),
+            Split::Plane { axis, position } => partition(references, axis, position),
+            Split::InOrder { left } => left.min(n),
+            Split::Count { axis, left } if left > 0 && left < n => select(references, axis, left),
+            Split::Spatial { axis, position } => {
+                let cut = Cut::new(references, axis, position);
+                let [left, right] = cut.counts;
+                if left + right <= room && fits(left) && fits(right) {
+                    let (left, right) = cut.carry_out(references);
+                    if left > 0 && !right.is_empty() {
+                        return Ok(self.cut(left, &right));
+                    }
+                    // All stayed whole, and went to the same side.
+                    references[left..].copy_from_slice(&right);
+                }
+                0
+            }
+            Split::Leaf | Split::Count { .. } => 0,
+        };
+        if fits(middle) && fits(n - middle) {
+            return Ok(self.divided(middle));
+        }
+        let axis = centroids(references).longest_axis();
+        let middle = select(references, axis, n / 2);
+        Ok(self.divided(middle))
+    }
+
+    /// The references before `middle` on one side, the others on the other.
+    fn divided(self, middle: usize) -> [Self; 2] {
+        let n = self.len;
+        let border = middle + share(self.memory.len() - n, middle, n);
+        if border > middle {
+            self.memory.copy_within(middle..n, border);
+        }
+        self.split_at(border, [middle, n - middle])
+    }
+
+    /// The first `left` references on one side, those in `right` on the other.
+    fn cut(self, left: usize, right: &[PrimRef<S>]) -> [Self; 2] {
+        let n = left + right.len();
+        let border = left + share(self.memory.len() - n, left, n);
+        self.memory[border..border + right.len()].copy_from_slice(right);
+        self.split_at(border, [left, right.len()])
+    }
+
+    fn split_at(self, border: usize, lens: [usize; 2]) -> [Self; 2] {
+        let (left, right) = self.memory.split_at_mut(border);
+        let depth = self.depth + 1;
+        let side = |memory: &'r mut [PrimRef<S>], len: usize| Set {
+            aabb: bounds(&memory[..len]),
+            memory,
+            len,
+            depth,
+        };
+        [side(left, lens[0]), side(right, lens[1])]
+    }
+}
+
+/// A side's part of the room for more, by the number of its references.
+fn share(spare: usize, side: usize, all: usize) -> usize {
+    if spare == 0 { 0 } else { (spare as u128 * side as u128 / all as u128) as usize }
 }
 
 /// The smallest k with 2^k >= n, for n > 0.
@@ -115,11 +174,13 @@ mod tests {
         let mut references = references(n, |i| (i * 7 % n) as f32);
         let aabb = bounds(&references);
         let rules = Rules { heuristic: &Always(split), max_leaf_size: 4, block_size: 1 };
-        divide(&mut references, &aabb, depth, &rules).map(|division| {
-            let (left, right) = references.split_at(division.middle);
-            assert_eq!(division.sides, [bounds(left), bounds(right)]);
-            division.middle
-        })
+        let len = references.len();
+        let sides = Set { memory: &mut references, len, aabb, depth }.divide(&rules, &aabb).ok()?;
+        for side in &sides {
+            assert_eq!(side.aabb, bounds(side.references()));
+        }
+        assert_eq!(sides[0].len + sides[1].len, len);
+        Some(sides[0].len)
     }
 
     #[test]

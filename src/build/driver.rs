@@ -9,7 +9,7 @@
 //! the same on any number of them. Nothing recurses: neither stack depth nor time hang on a
 //! heuristic's good will.
 
-use super::divide::{Rules, divide};
+use super::divide::{Rules, Set};
 use super::heuristic::Heuristic;
 use super::reference::{PrimRef, bounds};
 use crate::geometry::{Aabb, Scalar};
@@ -24,47 +24,31 @@ const TASK_SIZE: usize = 4096;
 
 /// A set of references that is to become a subtree.
 struct OpenNode<'r, S> {
-    references: &'r mut [PrimRef<S>],
-    /// The slot of its first reference.
-    first: usize,
-    aabb: Aabb<S>,
-    depth: usize,
+    set: Set<'r, S>,
     /// The inner node and the side that will refer to it; none for the root.
     parent: Option<(usize, usize)>,
 }
 
-impl<S: Scalar> OpenNode<'_, S> {
-    fn leaf(&self) -> Child {
-        Child::leaf(self.first..self.first + self.references.len())
-    }
+/// What is the same for all nodes.
+struct Build<'h, S, H: ?Sized> {
+    rules: &'h Rules<'h, H>,
+    scene: Aabb<S>,
 }
 
-impl<'r, S: Scalar> OpenNode<'r, S> {
-    /// Divides the set in two, or answers `Err` with itself if it is to be a leaf.
-    fn divide<H: Heuristic<S> + ?Sized>(self, rules: &Rules<'_, H>) -> Result<[Self; 2], Self> {
-        let Some(division) = divide(self.references, &self.aabb, self.depth, rules) else {
-            return Err(self);
-        };
-        let depth = self.depth + 1;
-        let (left, right) = self.references.split_at_mut(division.middle);
-        let [left_aabb, right_aabb] = division.sides;
-        let first = self.first + division.middle;
-        Ok([
-            OpenNode { references: left, first: self.first, aabb: left_aabb, depth, parent: None },
-            OpenNode { references: right, first, aabb: right_aabb, depth, parent: None },
-        ])
-    }
-}
-
-/// Nodes with the child that refers to the first of them.
+/// Nodes with the child that refers to the first of them, and the indices in the slots of their leaves.
 struct Subtree<S> {
     nodes: Vec<Node<S>>,
     root: Child,
+    indices: Vec<u32>,
 }
 
 impl<S: Scalar> Subtree<S> {
-    fn with_capacity(nodes: usize) -> Self {
-        Self { nodes: Vec::with_capacity(nodes), root: Child::default() }
+    fn with_capacity(nodes: usize, indices: usize) -> Self {
+        Self {
+            nodes: Vec::with_capacity(nodes),
+            root: Child::default(),
+            indices: Vec::with_capacity(indices),
+        }
     }
 
     fn refer(&mut self, parent: Option<(usize, usize)>, child: Child) {
@@ -74,32 +58,43 @@ impl<S: Scalar> Subtree<S> {
         }
     }
 
-    /// Makes the inner node above two sides and tells them of it.
-    fn push(&mut self, parent: Option<(usize, usize)>, sides: &mut [OpenNode<'_, S>; 2]) {
+    /// Makes the inner node above two sides.
+    fn push<'r>(&mut self, parent: Option<(usize, usize)>, sides: [Set<'r, S>; 2]) -> [OpenNode<'r, S>; 2] {
         let index = self.nodes.len();
         self.refer(parent, Child::inner(index));
         self.nodes.push(Node::new([sides[0].aabb, sides[1].aabb]));
-        for (side, node) in sides.iter_mut().enumerate() {
-            node.parent = Some((index, side));
-        }
+        let [left, right] = sides;
+        [OpenNode { set: left, parent: Some((index, 0)) }, OpenNode { set: right, parent: Some((index, 1)) }]
+    }
+
+    /// Makes a leaf.
+    fn push_leaf(&mut self, parent: Option<(usize, usize)>, references: &[PrimRef<S>]) {
+        let first = self.indices.len();
+        self.indices.extend(references.iter().map(|reference| reference.index));
+        self.refer(parent, Child::leaf(first..self.indices.len()));
     }
 }
 
-/// Builds the tree over valid references, and reorders them as its slots are. `indices` of the
-/// result are those of the references.
+/// Builds the tree over valid references. Up to `spare` more may be made of them.
 pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
-    references: &mut [PrimRef<S>],
+    mut references: Vec<PrimRef<S>>,
     rules: &Rules<'_, H>,
 ) -> Tree<S> {
-    let aabb = bounds(references);
+    let aabb = bounds(&references);
+    let primitives = references.len();
     if references.is_empty() {
-        return Tree { nodes: Vec::new(), root: Child::default(), aabb, indices: Vec::new() };
+        return Tree { nodes: Vec::new(), root: Child::default(), aabb, indices: Vec::new(), primitives };
     }
-    let (top, tasks) = build_top(OpenNode { references, first: 0, aabb, depth: 0, parent: None }, rules);
-    let subtrees = parallel::map(tasks, |task| build_subtree(task, rules));
-    let Subtree { nodes, root } = join(top, &subtrees);
-    let indices = references.iter().map(|reference| reference.index).collect();
-    Tree { nodes, root, aabb, indices }
+    rules.heuristic.prepare(&mut references, &aabb);
+    // Slots have 32 bits.
+    let most = primitives.saturating_add(rules.heuristic.spare(primitives)).min(u32::MAX as usize);
+    references.resize(most.max(primitives), PrimRef::new(Aabb::EMPTY, u32::MAX));
+    let build = Build { rules, scene: aabb };
+    let root = Set { memory: &mut references, len: primitives, aabb, depth: 0 };
+    let (top, tasks) = build_top(OpenNode { set: root, parent: None }, &build);
+    let subtrees = parallel::map(tasks, |task| build_subtree(task, &build));
+    let Subtree { nodes, root, indices } = join(top, &subtrees);
+    Tree { nodes, root, aabb, indices, primitives }
 }
 
 /// Instead of the number of a node, in the top: the number of a task, counted from the end.
@@ -110,27 +105,24 @@ fn task_child(task: usize) -> Child {
 /// Divides all sets of more than [`TASK_SIZE`] references, and returns the others as tasks.
 fn build_top<'r, S: Scalar, H: Heuristic<S> + ?Sized>(
     root: OpenNode<'r, S>,
-    rules: &Rules<'_, H>,
-) -> (Subtree<S>, Vec<OpenNode<'r, S>>) {
-    let mut top = Subtree::with_capacity(0);
+    build: &Build<'_, S, H>,
+) -> (Subtree<S>, Vec<Set<'r, S>>) {
+    let mut top = Subtree::with_capacity(0, 0);
     let mut tasks = Vec::new();
     let mut level = vec![root];
     while !level.is_empty() {
-        let (large, small): (Vec<_>, Vec<_>) =
-            level.into_iter().partition(|node| node.references.len() > TASK_SIZE);
+        let (large, small): (Vec<_>, Vec<_>) = level.into_iter().partition(|node| node.set.len > TASK_SIZE);
         for task in small {
             top.refer(task.parent, task_child(tasks.len()));
-            tasks.push(task);
+            tasks.push(task.set);
         }
         let parents: Vec<_> = large.iter().map(|node| node.parent).collect();
         level = Vec::new();
-        for (parent, divided) in parents.into_iter().zip(parallel::map(large, |node| node.divide(rules))) {
+        let divided = parallel::map(large, |node| node.set.divide(build.rules, &build.scene));
+        for (parent, divided) in parents.into_iter().zip(divided) {
             match divided {
-                Ok(mut sides) => {
-                    top.push(parent, &mut sides);
-                    level.extend(sides);
-                }
-                Err(node) => top.refer(parent, node.leaf()),
+                Ok(sides) => level.extend(top.push(parent, sides)),
+                Err(set) => top.push_leaf(parent, set.references()),
             }
         }
     }
@@ -139,45 +131,48 @@ fn build_top<'r, S: Scalar, H: Heuristic<S> + ?Sized>(
 
 /// Builds everything below one set, depth first: a left child is the node after its parent.
 fn build_subtree<S: Scalar, H: Heuristic<S> + ?Sized>(
-    root: OpenNode<'_, S>,
-    rules: &Rules<'_, H>,
+    root: Set<'_, S>,
+    build: &Build<'_, S, H>,
 ) -> Subtree<S> {
-    let mut subtree = Subtree::with_capacity(root.references.len() / 2);
-    let mut open = vec![OpenNode { parent: None, ..root }];
-    while let Some(node) = open.pop() {
-        let parent = node.parent;
-        match node.divide(rules) {
-            Ok(mut sides) => {
-                subtree.push(parent, &mut sides);
-                let [left, right] = sides;
+    let mut subtree = Subtree::with_capacity(root.len / 4, root.len);
+    let mut open = vec![OpenNode { set: root, parent: None }];
+    while let Some(OpenNode { set, parent }) = open.pop() {
+        match set.divide(build.rules, &build.scene) {
+            Ok(sides) => {
+                let [left, right] = subtree.push(parent, sides);
                 open.push(right);
                 open.push(left);
             }
-            Err(node) => subtree.refer(parent, node.leaf()),
+            Err(set) => subtree.push_leaf(parent, set.references()),
         }
     }
     subtree
 }
 
-/// The top and the subtrees of its tasks as one tree, a left child the node after its parent everywhere.
+/// The top and the subtrees of its tasks as one tree, a left child the node after its parent everywhere, and slots in the
+/// order of the leaves.
 fn join<S: Scalar>(top: Subtree<S>, subtrees: &[Subtree<S>]) -> Subtree<S> {
-    let count = subtrees.iter().fold(top.nodes.len(), |count, subtree| count + subtree.nodes.len());
-    let mut joined = Subtree::with_capacity(count);
+    let sum = |count: fn(&Subtree<S>) -> usize| subtrees.iter().map(count).sum::<usize>() + count(&top);
+    let mut joined =
+        Subtree::with_capacity(sum(|subtree| subtree.nodes.len()), sum(|subtree| subtree.indices.len()));
     let mut open = vec![(None, top.root)];
     while let Some((parent, child)) = open.pop() {
-        let base = joined.nodes.len();
-        let moved = |child: Child| {
-            if child.is_leaf() { child } else { Child::inner(base + child.first as usize) }
-        };
+        let (base, first) = (joined.nodes.len(), joined.indices.len());
         if child.is_leaf() {
-            joined.refer(parent, child);
+            joined.indices.extend_from_slice(&top.indices[child.slots()]);
+            joined.refer(parent, Child::leaf(first..joined.indices.len()));
         } else if let Some(node) = top.nodes.get(child.first as usize) {
             joined.refer(parent, Child::inner(base));
             joined.nodes.push(*node);
             open.extend([1, 0].map(|side| (Some((base, side)), node.children[side])));
         } else {
             let subtree = &subtrees[(u32::MAX - child.first) as usize];
+            let moved = |child: Child| Child {
+                first: child.first + if child.is_leaf() { first } else { base } as u32,
+                ..child
+            };
             joined.refer(parent, moved(subtree.root));
+            joined.indices.extend_from_slice(&subtree.indices);
             let nodes = subtree.nodes.iter();
             joined.nodes.extend(nodes.map(|node| Node { children: node.children.map(moved), ..*node }));
         }

@@ -76,6 +76,11 @@ impl<S: Scalar> PrimRef<S> {
     }
 }
 
+/// The box around references' centroids.
+pub(super) fn centroids<S: Scalar>(references: &[PrimRef<S>]) -> Aabb<S> {
+    references.iter().fold(Aabb::EMPTY, |all, reference| all.grow(reference.centroid()))
+}
+
 /// The box around references; [`Aabb::EMPTY`] around none.
 pub(super) fn bounds<S: Scalar>(references: &[PrimRef<S>]) -> Aabb<S> {
     Backend::best().run(Bounds(references))

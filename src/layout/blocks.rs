@@ -56,17 +56,7 @@ impl Blocks {
     /// Asks for lines to be brought into the cache. Any offset will do.
     #[inline(always)]
     pub fn prefetch(&self, offset: usize, bytes: usize) {
-        let first = self.lines.as_ptr().cast::<i8>().wrapping_add(offset);
-        for line in 0..bytes.div_ceil(Line::BYTES) {
-            #[cfg(target_arch = "x86_64")]
-            {
-                use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-                // SAFETY: no address is wrong to ask for, and SSE is part of every x86-64.
-                unsafe { _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(Line::BYTES * line)) }
-            }
-            #[cfg(not(target_arch = "x86_64"))]
-            let _ = (first, line);
-        }
+        prefetch(self.lines.as_ptr().cast::<u8>().wrapping_add(offset), bytes);
     }
 
     /// What lies at an offset.
@@ -115,5 +105,20 @@ impl Part<'_> {
         unsafe {
             core::slice::from_raw_parts_mut(self.lines.as_mut_ptr().cast::<u8>().add(place).cast(), len)
         }
+    }
+}
+
+/// Asks for lines to be brought into the cache. Any address will do.
+#[inline(always)]
+pub(super) fn prefetch(first: *const u8, bytes: usize) {
+    for line in 0..bytes.div_ceil(Line::BYTES) {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+            // SAFETY: no address is wrong to ask for, and SSE is part of every x86-64.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(Line::BYTES * line).cast()) }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = (first, line);
     }
 }

@@ -39,6 +39,8 @@ pub trait Outline<S: Scalar> {
     fn aabb(&self) -> Aabb<S>;
     /// Primitives in leaves.
     fn len(&self) -> usize;
+    /// The same, each as often as it is in a leaf.
+    fn references(&self) -> usize;
     /// Bytes of memory.
     fn bytes(&self) -> usize;
     /// Shows what is in a place, one by one. False if there is no such place.
@@ -64,6 +66,9 @@ impl<S: Scalar> Outline<S> for Tree<S> {
         self.aabb
     }
     fn len(&self) -> usize {
+        self.primitives
+    }
+    fn references(&self) -> usize {
         self.indices.len()
     }
     fn bytes(&self) -> usize {
@@ -101,6 +106,9 @@ impl<S: Scalar, const N: usize> Outline<S> for WideTree<S, N> {
     fn len(&self) -> usize {
         self.len
     }
+    fn references(&self) -> usize {
+        self.references
+    }
     fn bytes(&self) -> usize {
         self.blocks.bytes()
     }
@@ -137,5 +145,9 @@ impl<P: Intersect> Contents<P::Scalar> for &[P] {
     }
     fn aabb(&self, index: u32) -> Aabb<P::Scalar> {
         self[index as usize].aabb()
+    }
+    fn prefetch(&self, index: u32) {
+        let primitive = self.as_ptr().wrapping_add(index as usize).cast();
+        blocks::prefetch(primitive, size_of::<P>().min(128));
     }
 }

@@ -115,6 +115,8 @@ pub struct WideTree<S = f32, const N: usize = 16> {
     pub(super) operands: usize,
     /// Primitives in leaves.
     pub(super) len: usize,
+    /// The same, each as often as it is in a leaf.
+    pub(super) references: usize,
     /// All coordinates are below `Scalar::LARGE_AREA`.
     pub(super) is_ordinary: bool,
 }

@@ -21,6 +21,8 @@ pub struct Hits<'a, P: Intersect, L: Layout<P>, R = ()> {
     primitives: &'a [P],
     ray: PreparedRay<P::Scalar>,
     queue: BinaryHeap<Event<P::Scalar, P::Payload, L::Place>>,
+    /// The last answer: a primitive that is in several leaves is met again, but is an answer once.
+    last: Option<(P::Scalar, u32)>,
     recorder: R,
 }
 
@@ -47,12 +49,12 @@ impl<'a, P: Intersect, L: Layout<P>, R: Recorder> Hits<'a, P, L, R> {
                 queue.push(Event { t, what: What::Box(root) });
             }
         }
-        Self { layout, primitives, ray, queue, recorder }
+        Self { layout, primitives, ray, queue, last: None, recorder }
     }
 
     /// Puts what is in a box into the queue.
     fn open(&mut self, place: L::Place) {
-        let Self { layout, primitives, ray, queue, recorder } = self;
+        let Self { layout, primitives, ray, queue, recorder, .. } = self;
         let mut is_leaf = false;
         layout.open(place, |part| match part {
             Part::Child(aabb, place) => {
@@ -80,7 +82,12 @@ impl<P: Intersect, L: Layout<P>, R: Recorder> Iterator for Hits<'_, P, L, R> {
             let Event { t, what } = self.queue.pop()?;
             match what {
                 What::Box(place) => self.open(place),
-                What::Hit { index, payload } => return Some(Hit { t, index: index as usize, payload }),
+                What::Hit { index, payload } => {
+                    if self.last.is_none_or(|last| last < (t, index)) {
+                        self.last = Some((t, index));
+                        return Some(Hit { t, index: index as usize, payload });
+                    }
+                }
             }
         }
     }

@@ -78,14 +78,16 @@ pub struct Tree<S = f32> {
     pub(crate) nodes: Vec<Node<S>>,
     pub(crate) root: Child,
     pub(crate) aabb: Aabb<S>,
-    /// The input's index of each slot's primitive. Leaves are ranges of slots.
+    /// The input's index of each slot's primitive. Leaves are ranges of slots; a primitive may be in several.
     pub(crate) indices: Vec<u32>,
+    /// How many there are.
+    pub(crate) primitives: usize,
 }
 
 impl<S: Scalar> Tree<S> {
     /// The number of primitives in its leaves.
     pub fn len(&self) -> usize {
-        self.indices.len()
+        self.primitives
     }
 
     /// No primitives in it.

@@ -10,6 +10,8 @@ use core::fmt;
 pub struct TreeReport {
     /// Primitives in leaves.
     pub primitives: usize,
+    /// The same, each as often as it is in a leaf: more after spatial splits.
+    pub references: usize,
     /// Nodes with children: two in a [`Tree`](crate::Tree), up to N in a [`WideTree`](crate::WideTree).
     pub inner_nodes: usize,
     /// Leaves, 0 for an empty tree.
@@ -81,9 +83,10 @@ impl TreeReport {
             }
         }
         let per_leaf = |total: usize| if leaves > 0 { total as f64 / leaves as f64 } else { 0.0 };
-        sizes.mean = per_leaf(len);
+        sizes.mean = per_leaf(hierarchy.references());
         Self {
             primitives: len,
+            references: hierarchy.references(),
             inner_nodes,
             leaves,
             max_depth,
@@ -97,7 +100,7 @@ impl TreeReport {
 
 impl fmt::Display for TreeReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "primitives   {}", self.primitives)?;
+        writeln!(f, "primitives   {}, {} references", self.primitives, self.references)?;
         writeln!(f, "inner nodes  {}", self.inner_nodes)?;
         let LeafSizes { min, max, mean, .. } = self.leaf_sizes;
         writeln!(f, "leaves       {} of {min} to {max} primitives, mean {mean:.2}", self.leaves)?;

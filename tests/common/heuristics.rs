@@ -1,7 +1,7 @@
 //! The heuristics that every test of agreement runs through, one of them hostile.
 
 use super::hostile::Hostile;
-use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, SahCost, SweepSah};
+use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, SahCost, SpatialSah, SweepSah};
 use bvhkit::{Quality, Scalar};
 
 /// Every heuristic of the crate and [`Hostile`], with a name for messages.
@@ -16,6 +16,7 @@ pub fn all<S: Scalar>() -> Vec<(&'static str, Box<dyn Heuristic<S>>)> {
         ("32 bins", Box::new(BinnedSah::new(32))),
         ("sweep", Box::new(SweepSah::default())),
         ("fast", Box::new(Quality::Fast)),
+        ("spatial", Box::new(SpatialSah { overlap: 0.0, growth: 2.0, ..SpatialSah::default() })),
         ("hostile", Box::new(Hostile)),
     ]
 }

@@ -1,6 +1,6 @@
 //! The surface area heuristic on a few planes.
 
-use super::bins::Bins;
+use super::bins::{Bins, Plane};
 use super::{BuildNode, Heuristic, SahCost, Split};
 use crate::geometry::{Aabb, Scalar};
 use crate::simd::Backend;
@@ -48,31 +48,36 @@ impl<S: Scalar> Heuristic<S> for BinnedSah {
         if SahCost::is_block(node) {
             return Split::Leaf;
         }
-        // Bins are cleared and swept for every node: no more of them than pay. Half of them for few references cost
-        // less than 1 % of the rays that they save a tenth of the build.
-        let bins = self.bins.clamp(2, Self::MAX_BINS);
-        let is_small = node.references.len() <= 2 * bins;
-        match if is_small { bins.div_ceil(2).max(2) } else { bins } {
-            bins @ ..=8 => self.split_with::<S, 8>(node, bins),
-            bins @ 9..=16 => self.split_with::<S, 16>(node, bins),
-            bins => self.split_with::<S, { Self::MAX_BINS }>(node, bins),
+        let Some(best) = self.plane(node) else { return Split::Leaf };
+        let area = node.aabb.scaled_half_area(node.aabb.area_scale()).to_f64();
+        let may_be_leaf = node.references.len() <= node.max_leaf_size;
+        if may_be_leaf && self.cost.prefers_leaf(node, area, best.weighted_area.to_f64()) {
+            Split::Leaf
+        } else {
+            best.split
         }
     }
 }
 
 impl BinnedSah {
-    fn split_with<S: Scalar, const N: usize>(&self, node: &BuildNode<'_, S>, count: usize) -> Split<S> {
-        let (references, n) = (node.references, node.references.len());
-        let area_scale = node.aabb.area_scale();
+    /// The cheapest plane; none if all centroids are one point.
+    pub(super) fn plane<S: Scalar>(&self, node: &BuildNode<'_, S>) -> Option<Plane<S>> {
+        // Bins are cleared and swept for every node: no more of them than pay. Half of them for few references cost
+        // less than 1 % of the rays that they save a tenth of the build.
+        let bins = self.bins.clamp(2, Self::MAX_BINS);
+        let is_small = node.references.len() <= 2 * bins;
+        match if is_small { bins.div_ceil(2).max(2) } else { bins } {
+            bins @ ..=8 => Self::plane_of::<S, 8>(node, bins),
+            bins @ 9..=16 => Self::plane_of::<S, 16>(node, bins),
+            bins => Self::plane_of::<S, { Self::MAX_BINS }>(node, bins),
+        }
+    }
+
+    fn plane_of<S: Scalar, const N: usize>(node: &BuildNode<'_, S>, count: usize) -> Option<Plane<S>> {
+        let (references, area_scale) = (node.references, node.aabb.area_scale());
         let plane =
             |span: &Aabb<S>| Backend::best().run(Bins::<S, N> { references, span, count, area_scale });
-        let Some(best) = plane(&node.aabb).or_else(|| plane(&node.centroids())) else { return Split::Leaf };
-        let area = node.aabb.scaled_half_area(area_scale).to_f64();
-        if n <= node.max_leaf_size && self.cost.prefers_leaf(node, area, best.weighted_area.to_f64()) {
-            Split::Leaf
-        } else {
-            best.split
-        }
+        plane(&node.aabb).or_else(|| plane(&node.centroids()))
     }
 }
 
@@ -84,13 +89,9 @@ mod tests {
     use alloc::vec::Vec;
 
     fn split_of(references: &[PrimRef], heuristic: BinnedSah, max_leaf_size: usize) -> Split {
-        heuristic.split(&BuildNode {
-            aabb: bounds(references),
-            references,
-            depth: 0,
-            max_leaf_size,
-            block_size: 1,
-        })
+        let aabb = bounds(references);
+        let (depth, block_size, spare) = (0, 1, 0);
+        heuristic.split(&BuildNode { aabb, references, depth, max_leaf_size, block_size, scene: aabb, spare })
     }
 
     fn unit_boxes(positions: &[f32]) -> Vec<PrimRef> {

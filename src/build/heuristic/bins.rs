@@ -21,6 +21,8 @@ pub(super) struct Bins<'r, S, const N: usize> {
 pub(super) struct Plane<S> {
     pub weighted_area: S,
     pub split: Split<S>,
+    /// The area that the sides have in common.
+    pub overlap: S,
 }
 
 /// Rows of bins are computed with in parts of so many lanes.
@@ -46,7 +48,8 @@ impl<S: Scalar, const N: usize> Kernel for Bins<'_, S, N> {
         let costs = [self.costs(isa, &filled, 0), self.costs(isa, &filled, 1), self.costs(isa, &filled, 2)];
         let (axis, bin, weighted_area) = least(isa, &costs)?;
         let position = self.span.min[axis] + S::from_count(bin as i32) / scale[axis];
-        Some(Plane { weighted_area, split: Split::Plane { axis: Axis::ALL[axis], position } })
+        let overlap = filled.overlap(isa, axis, bin).scaled_half_area(self.area_scale);
+        Some(Plane { weighted_area, split: Split::Plane { axis: Axis::ALL[axis], position }, overlap })
     }
 }
 
@@ -120,6 +123,20 @@ impl<S: Scalar, I: Simd, const N: usize> Filled<S, I, N> {
     #[inline(always)]
     fn empty(isa: I) -> Self {
         Self { boxes: [[S::Times8::splat(isa, S::NEG_INFINITY); N]; 3], counts: [[0; N]; 3] }
+    }
+
+    /// What the boxes before a bin and those from it on have in common.
+    #[inline(always)]
+    fn overlap(&self, isa: I, axis: usize, border: usize) -> Aabb<S> {
+        let nothing = S::Times8::splat(isa, S::NEG_INFINITY);
+        let (mut left, mut right) = (nothing, nothing);
+        for bin in 0..N {
+            let side = if bin < border { &mut left } else { &mut right };
+            *side = side.max(self.boxes[axis][bin]);
+        }
+        let [negated_min, max] = left.min(right).to_halves();
+        let min = S::Times4::splat(isa, S::ZERO) - negated_min;
+        Aabb { min: [min.lane(0), min.lane(1), min.lane(2)], max: [max.lane(0), max.lane(1), max.lane(2)] }
     }
 
     #[inline(always)]

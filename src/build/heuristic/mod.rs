@@ -6,22 +6,29 @@
 //! | [`Midpoint`] | longest axis, equal lengths | |
 //! | [`BinnedSah`] | the cheapest of some planes by the surface area heuristic | Wald 2007 |
 //! | [`SweepSah`] | the cheapest of all splits by the same | MacDonald and Booth 1990 |
+//! | [`SpatialSah`] | those of [`BinnedSah`], or a plane that cuts references in two | Stich et al. 2009 |
+//! | [`Morton`] | where the highest bit changes along a space-filling curve | Lauterbach et al. 2009 |
 
 mod binned_sah;
 mod bins;
 mod median;
 mod midpoint;
+mod morton;
 mod sah;
+mod spatial_sah;
 mod sweep_sah;
 
 pub use binned_sah::BinnedSah;
 pub use median::Median;
 pub use midpoint::Midpoint;
+pub use morton::Morton;
 pub use sah::SahCost;
+pub use spatial_sah::SpatialSah;
 pub use sweep_sah::SweepSah;
 
-use super::reference::PrimRef;
+use super::reference::{PrimRef, centroids};
 use crate::geometry::{Aabb, Axis, Scalar};
+use alloc::vec::Vec;
 
 /// Decides how a node is split: one pure function.
 ///
@@ -60,11 +67,28 @@ use crate::geometry::{Aabb, Axis, Scalar};
 pub trait Heuristic<S: Scalar>: Sync {
     /// Proposes how to split `node`, which has at least two references.
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S>;
+
+    /// Called once before all splits: a heuristic may bring the references into an order, which
+    /// [`Split::InOrder`] keeps.
+    fn prepare(&self, _references: &mut Vec<PrimRef<S>>, _scene: &Aabb<S>) {}
+
+    /// How many more references than primitives there may be, by [`Split::Spatial`]: memory for them is asked for at once.
+    fn spare(&self, _primitives: usize) -> usize {
+        0
+    }
 }
 
 impl<S: Scalar, H: Heuristic<S> + ?Sized> Heuristic<S> for &H {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
         (**self).split(node)
+    }
+
+    fn prepare(&self, references: &mut Vec<PrimRef<S>>, scene: &Aabb<S>) {
+        (**self).prepare(references, scene);
+    }
+
+    fn spare(&self, primitives: usize) -> usize {
+        (**self).spare(primitives)
     }
 }
 
@@ -81,13 +105,16 @@ pub struct BuildNode<'a, S = f32> {
     pub max_leaf_size: usize,
     /// How many primitives a leaf tests at once: 8 where they are packed side by side, else 1.
     pub block_size: usize,
+    /// The box around everything.
+    pub scene: Aabb<S>,
+    /// How many more references there may be below than there are: what [`Split::Spatial`] may add.
+    pub spare: usize,
 }
 
 impl<S: Scalar> BuildNode<'_, S> {
     /// The box around the primitives' centroids: O(n), for those who ask.
     pub fn centroids(&self) -> Aabb<S> {
-        let join = |all: Aabb<S>, reference: &PrimRef<S>| all.grow(reference.centroid());
-        self.references.iter().fold(Aabb::EMPTY, join)
+        centroids(self.references)
     }
 }
 
@@ -109,5 +136,19 @@ pub enum Split<S = f32> {
         axis: Axis,
         /// How many go left.
         left: usize,
+    },
+    /// Left, the first `left` references as they lie in the node.
+    InOrder {
+        /// How many go left.
+        left: usize,
+    },
+    /// Left, what lies below `position`; right, what lies above. References whose boxes are on both sides are cut in
+    /// two, or go to one side as a whole where that is cheaper (Stich, Friedrich and Dietrich, Spatial Splits in Bounding
+    /// Volume Hierarchies, HPG 2009). Taken only if [`spare`](BuildNode::spare) has room for all that are on both sides.
+    Spatial {
+        /// The axis across which the plane lies.
+        axis: Axis,
+        /// The plane's coordinate on it.
+        position: S,
     },
 }

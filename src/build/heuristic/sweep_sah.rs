@@ -156,6 +156,8 @@ mod tests {
             depth: 0,
             max_leaf_size: 1,
             block_size: 1,
+            scene: aabb,
+            spare: 0,
         });
         assert_eq!(split, Split::Count { axis: cheapest.0, left: cheapest.1 });
     }
