@@ -61,6 +61,15 @@ impl<S: Scalar> Aabb<S> {
         Self { min: [min(bx, ax), min(by, ay), min(bz, az)], max: [max(dx, cx), max(dy, cy), max(dz, cz)] }
     }
 
+    /// What is inside of both; empty if nothing is.
+    #[inline]
+    #[must_use]
+    pub fn intersection(self, other: Self) -> Self {
+        let ([ax, ay, az], [bx, by, bz]) = (self.min, other.min);
+        let ([cx, cy, cz], [dx, dy, dz]) = (self.max, other.max);
+        Self { min: [max(bx, ax), max(by, ay), max(bz, az)], max: [min(dx, cx), min(dy, cy), min(dz, cz)] }
+    }
+
     /// Holds no point.
     #[inline]
     pub fn is_empty(&self) -> bool {

@@ -51,8 +51,9 @@ struct Arrangement<S> {
 }
 
 /// A part of the binary tree that is to become a node.
-struct Open {
+struct Open<S> {
     child: Child,
+    aabb: Aabb<S>,
     /// Which of all children it is; none for the root.
     place: Option<usize>,
     depth: usize,
@@ -113,20 +114,20 @@ impl<S: Scalar, const N: usize> WideTree<S, N> {
             all.root = Some(all.leaf(plan.slots(root), contents.operands()));
             return Ok(all);
         }
-        let mut open = alloc::vec![Open { child: root, place: None, depth: 0, pending: 0 }];
+        let mut open = alloc::vec![Open { child: root, aabb: tree.aabb, place: None, depth: 0, pending: 0 }];
         let mut roots = Vec::with_capacity(N);
-        while let Some(Open { child, place, depth, pending }) = open.pop() {
+        while let Some(Open { child, aabb, place, depth, pending }) = open.pop() {
             if depth > MAX_DEPTH || pending > MAX_PENDING {
                 return Err(Failure::TooDeep);
             }
             roots.clear();
             if child.is_leaf() {
-                parts(child, contents, &tree.indices, N, &mut roots);
+                parts((child, aabb), contents, &tree.indices, N, &mut roots);
             } else {
                 roots_of(child.first as usize, &mut roots);
             }
             // The child to begin with in the highest lane: from there it is taken first if any hit will do.
-            roots.sort_by(|(_, a), (_, b)| plan.area(a).total_cmp(&plan.area(b)));
+            roots.sort_by_cached_key(|(_, aabb)| plan.area(aabb).to_ordered_bits());
             let first = all.children.len();
             let offset = all.allocate(
                 What::Node(first..first + roots.len()),
@@ -138,7 +139,7 @@ impl<S: Scalar, const N: usize> WideTree<S, N> {
                     all.leaf(plan.slots(child), contents.operands())
                 } else {
                     let (place, pending) = (Some(all.children.len()), pending + roots.len() - 1);
-                    open.push(Open { child, place, depth: depth + 1, pending });
+                    open.push(Open { child, aabb, place, depth: depth + 1, pending });
                     Reference::NONE
                 };
                 all.children.push((aabb, reference));
@@ -239,9 +240,9 @@ fn put_leaf<S: Scalar>(
     places[indices.len()..].fill(NOBODY);
 }
 
-/// A leaf too large for one block, as at most `n` equal parts.
+/// A leaf too large for one block, with its box, as at most `n` equal parts.
 fn parts<S: Scalar>(
-    leaf: Child,
+    (leaf, within): (Child, Aabb<S>),
     contents: &impl Contents<S>,
     indices: &[u32],
     n: usize,
@@ -252,6 +253,7 @@ fn parts<S: Scalar>(
     for first in slots.clone().step_by(size) {
         let part = first..(first + size).min(slots.end);
         let aabb = part.clone().fold(Aabb::EMPTY, |aabb, slot| aabb.union(contents.aabb(indices[slot])));
-        roots.push((Child::leaf(part), aabb));
+        // Of primitives that are in several leaves, no more than was in this one.
+        roots.push((Child::leaf(part), aabb.intersection(within)));
     }
 }

@@ -179,16 +179,25 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
     /// Divides k roots among the two children of a node.
     fn split(&self, node: usize, k: usize, open: &mut Vec<(Child, Aabb<S>, usize)>) {
         let node = &self.tree.nodes[node];
-        let forest = |side: usize, k: usize| match node.children[side] {
-            leaf if leaf.is_leaf() => self.weight_of_leaf(leaf, self.area(&node.aabb(side))).forest[0],
-            inner => self.weights[inner.first as usize].forest[k - 1],
+        let side = |side: usize| match node.children[side] {
+            leaf if leaf.is_leaf() => (&[0.0; N], 1),
+            inner => {
+                let weight = &self.weights[inner.first as usize];
+                (&weight.forest, weight.roots)
+            }
         };
-        let cost = |j: usize| forest(0, j) + forest(1, k - j);
-        let best =
-            (1..k).map(|j| (cost(j), j)).reduce(|best, next| if next.0 < best.0 { next } else { best });
-        let left = best.map_or(1, |(_, left)| left);
-        open.push((node.children[1], node.aabb(1), k - left));
-        open.push((node.children[0], node.aabb(0), left));
+        // A leaf costs what it costs: leaving it out changes no order.
+        let ((left, most_left), (right, most_right)) = (side(0), side(1));
+        let k = k.min(most_left + most_right);
+        let (mut best, mut least) = (1, f32::INFINITY);
+        for j in k.saturating_sub(most_right).max(1)..=most_left.min(k - 1) {
+            let cost = left[j - 1] + right[k - j - 1];
+            if cost < least {
+                (best, least) = (j, cost);
+            }
+        }
+        open.push((node.children[1], node.aabb(1), k - best));
+        open.push((node.children[0], node.aabb(0), best));
     }
 
     /// Instead of [`cheapest`](Self::cheapest): all that is a number of levels below a binary node, or a leaf before, as
