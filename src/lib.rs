@@ -85,7 +85,7 @@ mod tree;
 struct Readme;
 
 pub use build::heuristic;
-pub use build::{Flaw, Gain, Optimise, PrimRef};
+pub use build::{Flaw, Gain, Optimise, Pace, PrimRef};
 pub use builder::{BuildError, Builder, OnInvalid, Quality};
 pub use bvh::Bvh;
 pub use geometry::{Aabb, Axis, PreparedRay, Ray, RayError, Scalar};

@@ -12,6 +12,7 @@
 use super::divide::{Rules, Set};
 use super::heuristic::Heuristic;
 use super::reference::{PrimRef, bounds};
+use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
 use crate::tree::{Child, Node, Tree};
@@ -32,7 +33,19 @@ struct OpenNode<'r, S> {
 /// What is the same for all nodes.
 struct Build<'h, S, H: ?Sized> {
     rules: &'h Rules<'h, H>,
+    watch: &'h Watch<'h>,
     scene: Aabb<S>,
+}
+
+impl<S: Scalar, H: Heuristic<S> + ?Sized> Build<'_, S, H> {
+    /// Two sets of one, or the set itself if it is to be a leaf.
+    fn divide<'r>(&self, set: Set<'r, S>, pace: Pace) -> Result<[Set<'r, S>; 2], Set<'r, S>> {
+        match pace {
+            Pace::Steady => set.divide(self.rules, &self.scene),
+            Pace::Hurry => set.halve(self.rules),
+            Pace::Stop => Err(set),
+        }
+    }
 }
 
 /// Nodes with the child that refers to the first of them, and the indices in the slots of their leaves.
@@ -75,26 +88,36 @@ impl<S: Scalar> Subtree<S> {
     }
 }
 
-/// Builds the tree over valid references. Up to `spare` more may be made of them.
+/// Builds the tree over valid references; none if it was told to stop.
 pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
     mut references: Vec<PrimRef<S>>,
     rules: &Rules<'_, H>,
-) -> Tree<S> {
+    watch: &Watch<'_>,
+) -> Option<Tree<S>> {
     let aabb = bounds(&references);
     let primitives = references.len();
     if references.is_empty() {
-        return Tree { nodes: Vec::new(), root: Child::default(), aabb, indices: Vec::new(), primitives };
+        return Some(Tree {
+            nodes: Vec::new(),
+            root: Child::default(),
+            aabb,
+            indices: Vec::new(),
+            primitives,
+        });
     }
     rules.heuristic.prepare(&mut references, &aabb);
     // Slots have 32 bits.
     let most = primitives.saturating_add(rules.heuristic.spare(primitives)).min(u32::MAX as usize);
     references.resize(most.max(primitives), PrimRef::new(Aabb::EMPTY, u32::MAX));
-    let build = Build { rules, scene: aabb };
+    let build = Build { rules, watch, scene: aabb };
     let root = Set { memory: &mut references, len: primitives, aabb, depth: 0 };
     let (top, tasks) = build_top(OpenNode { set: root, parent: None }, &build);
     let subtrees = parallel::map(tasks, |task| build_subtree(task, &build));
+    if watch.ask() == Pace::Stop {
+        return None;
+    }
     let Subtree { nodes, root, indices } = join(top, &subtrees);
-    Tree { nodes, root, aabb, indices, primitives }
+    Some(Tree { nodes, root, aabb, indices, primitives })
 }
 
 /// Instead of the number of a node, in the top: the number of a task, counted from the end.
@@ -118,7 +141,7 @@ fn build_top<'r, S: Scalar, H: Heuristic<S> + ?Sized>(
         }
         let parents: Vec<_> = large.iter().map(|node| node.parent).collect();
         level = Vec::new();
-        let divided = parallel::map(large, |node| node.set.divide(build.rules, &build.scene));
+        let divided = parallel::map(large, |node| build.divide(node.set, build.watch.ask()));
         for (parent, divided) in parents.into_iter().zip(divided) {
             match divided {
                 Ok(sides) => level.extend(top.push(parent, sides)),
@@ -134,10 +157,11 @@ fn build_subtree<S: Scalar, H: Heuristic<S> + ?Sized>(
     root: Set<'_, S>,
     build: &Build<'_, S, H>,
 ) -> Subtree<S> {
-    let mut subtree = Subtree::with_capacity(root.len / 4, root.len);
+    let (pace, len) = (build.watch.ask(), root.len);
+    let mut subtree = Subtree::with_capacity(len / 4, len);
     let mut open = vec![OpenNode { set: root, parent: None }];
     while let Some(OpenNode { set, parent }) = open.pop() {
-        match set.divide(build.rules, &build.scene) {
+        match build.divide(set, pace) {
             Ok(sides) => {
                 let [left, right] = subtree.push(parent, sides);
                 open.push(right);
@@ -146,6 +170,7 @@ fn build_subtree<S: Scalar, H: Heuristic<S> + ?Sized>(
             Err(set) => subtree.push_leaf(parent, set.references()),
         }
     }
+    build.watch.place(len);
     subtree
 }
 

@@ -13,8 +13,11 @@ mod driver;
 pub mod heuristic;
 mod optimise;
 mod reference;
+mod watch;
 
 pub(crate) use divide::Rules;
 pub(crate) use driver::build_tree;
 pub use optimise::{Gain, Optimise};
 pub use reference::{Flaw, PrimRef};
+pub use watch::Pace;
+pub(crate) use watch::{Watch, Watcher};

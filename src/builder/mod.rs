@@ -1,63 +1,26 @@
 //! The options of a build, and what may be wrong with its input.
 
-use crate::build::heuristic::{BinnedSah, BuildNode, Heuristic, Morton, Split};
-use crate::build::{Flaw, Optimise, PrimRef, Rules, build_tree};
+mod error;
+mod quality;
+
+pub use error::BuildError;
+pub use quality::Quality;
+
+use crate::build::heuristic::Heuristic;
+use crate::build::{Optimise, Pace, PrimRef, Rules, Watch, Watcher, build_tree};
 use crate::bvh::Bvh;
-use crate::geometry::{Aabb, Scalar};
+use crate::geometry::Scalar;
 use crate::layout::{Layout, WideTree};
-use crate::parallel::{self, ThreadPoolError, in_pool};
+use crate::parallel::{self, in_pool};
 use crate::primitive::Primitive;
 use crate::simd::{Backend, InstructionSet};
 use crate::tree::Tree;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
-use core::fmt;
 use core::marker::PhantomData;
 use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
-
-/// How much time a build may take for how quick a tree: a heuristic, and how much of its tree is reinserted.
-///
-/// The README has the figures. To choose for yourself: [`Builder::heuristic`] and [`Builder::optimise`].
-///
-/// None of them has [`SweepSah`](crate::heuristic::SweepSah), which tries every split: on six scenes
-/// its trees are 1 to 7 % better than those of 32 bins on four and 2 to 45 % worse on two, where
-/// greedy exactness misleads, and take 2 to 3 times as long to build. Nor
-/// [`SpatialSah`](crate::heuristic::SpatialSah): in nodes of 16 children its trees are within 10 % of
-/// `High`'s either way, and take half as much time again.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Quality {
-    /// [`Morton`], a hundredth reinserted 8 times.
-    Fast,
-    /// [`BinnedSah`] of 16 bins, a hundredth reinserted 8 times.
-    #[default]
-    Balanced,
-    /// [`BinnedSah`] of 16 bins, a tenth reinserted 16 times.
-    High,
-}
-
-impl Quality {
-    /// How much is reinserted.
-    pub fn optimise(self) -> Optimise {
-        match self {
-            Self::Fast | Self::Balanced => Optimise::default(),
-            Self::High => Optimise { share: 0.1, rounds: 16 },
-        }
-    }
-}
-
-impl<S: Scalar> Heuristic<S> for Quality {
-    fn prepare(&self, references: &mut Vec<PrimRef<S>>, scene: &Aabb<S>) {
-        if *self == Self::Fast {
-            Morton.prepare(references, scene);
-        }
-    }
-
-    fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
-        match self {
-            Self::Fast => Morton.split(node),
-            Self::Balanced | Self::High => BinnedSah::new(16).split(node),
-        }
-    }
-}
+#[cfg(feature = "std")]
+use std::time::{Duration, Instant};
 
 /// What to do with a primitive whose box has a NaN, an infinity, or a minimum above its maximum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -69,63 +32,6 @@ pub enum OnInvalid {
     /// their indices.
     Skip,
 }
-
-/// Why a build failed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum BuildError {
-    /// A primitive has a box that is no place in space, and [`OnInvalid::Reject`] is in force.
-    InvalidPrimitive {
-        /// Its index in the input.
-        index: usize,
-        /// What is wrong with it.
-        flaw: Flaw,
-    },
-    /// More primitives than 32 bits can number, 2^32 - 1. Found before anything is allocated if the
-    /// input tells its length.
-    TooManyPrimitives {
-        /// How many there are at least.
-        count: usize,
-    },
-    /// `max_leaf_size` is 0.
-    ZeroLeafSize,
-    /// The layout needs more memory than its references can tell apart: see [`WideTree`].
-    TooLarge,
-    /// The processor, or this build of the crate, does not have the instruction set asked for.
-    NoInstructionSet(InstructionSet),
-    /// The threads asked for could not be had.
-    ThreadPool(ThreadPoolError),
-}
-
-impl fmt::Display for BuildError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::InvalidPrimitive { index, flaw } => {
-                let what = match flaw {
-                    Flaw::NanBox => "a bounding box with a NaN",
-                    Flaw::InfiniteBox => "a bounding box with an infinite bound",
-                    Flaw::InvertedBox => "a bounding box whose minimum is above its maximum",
-                };
-                write!(f, "primitive {index} has {what}: repair it, or build with OnInvalid::Skip")
-            }
-            Self::TooManyPrimitives { count } => {
-                write!(f, "{count} primitives or more, but indices have 32 bits: split the scene")
-            }
-            Self::ZeroLeafSize => {
-                f.write_str("max_leaf_size is 0, but a leaf has a primitive: give 1 or more")
-            }
-            Self::TooLarge => {
-                f.write_str("the layout exceeds 16 GiB: use the layout Tree, or split the scene")
-            }
-            Self::NoInstructionSet(set) => {
-                write!(f, "no {set} here: InstructionSet::available() tells what there is")
-            }
-            Self::ThreadPool(error) => error.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for BuildError {}
 
 /// The options of a build; from [`Bvh::builder`].
 ///
@@ -155,13 +61,16 @@ pub struct Builder<P: Primitive, H = Quality, L = WideTree<<P as Primitive>::Sca
     threads: Option<usize>,
     on_invalid: OnInvalid,
     optimise: Option<Optimise>,
+    watcher: Option<Watcher>,
+    #[cfg(feature = "std")]
+    time_budget: Option<Duration>,
     instruction_set: Option<InstructionSet>,
     result: PhantomData<fn() -> (P, L)>,
 }
 
 impl<P: Primitive, H: Clone, L> Clone for Builder<P, H, L> {
     fn clone(&self) -> Self {
-        Self { heuristic: self.heuristic.clone(), ..*self }
+        Self { heuristic: self.heuristic.clone(), watcher: self.watcher.clone(), ..*self }
     }
 }
 
@@ -173,6 +82,9 @@ impl<P: Primitive, L> Builder<P, Quality, L> {
             threads: None,
             on_invalid: OnInvalid::default(),
             optimise: Some(Quality::default().optimise()),
+            watcher: None,
+            #[cfg(feature = "std")]
+            time_budget: None,
             instruction_set: None,
             result: PhantomData,
         }
@@ -213,9 +125,23 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// optimisation, unless [`optimise`](Self::optimise) follows.
     #[must_use]
     pub fn heuristic<G: Heuristic<P::Scalar>>(self, heuristic: G) -> Builder<P, G, L> {
-        let Self { max_leaf_size, threads, on_invalid, instruction_set, result, .. } = self;
-        let optimise = None;
-        Builder { heuristic, max_leaf_size, threads, on_invalid, optimise, instruction_set, result }
+        Builder { optimise: None, ..self.map(|_| heuristic) }
+    }
+
+    /// The same with another heuristic or another layout.
+    fn map<G, M>(self, change: impl FnOnce(H) -> G) -> Builder<P, G, M> {
+        Builder {
+            heuristic: change(self.heuristic),
+            max_leaf_size: self.max_leaf_size,
+            threads: self.threads,
+            on_invalid: self.on_invalid,
+            optimise: self.optimise,
+            watcher: self.watcher,
+            #[cfg(feature = "std")]
+            time_budget: self.time_budget,
+            instruction_set: self.instruction_set,
+            result: PhantomData,
+        }
     }
 
     /// How the hierarchy lies in memory, in place of the [`WideTree`] of 16: another [`Layout`].
@@ -229,16 +155,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// ```
     #[must_use]
     pub fn layout<M: Layout<P>>(self) -> Builder<P, H, M> {
-        let Self { heuristic, max_leaf_size, threads, on_invalid, optimise, instruction_set, .. } = self;
-        Builder {
-            heuristic,
-            max_leaf_size,
-            threads,
-            on_invalid,
-            optimise,
-            instruction_set,
-            result: PhantomData,
-        }
+        self.map(|heuristic| heuristic)
     }
 
     /// What queries are computed with, [`InstructionSet::best`] unless set: to compare and to test.
@@ -269,6 +186,37 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     #[must_use]
     pub fn optimise(self, optimise: Optimise) -> Self {
         Self { optimise: Some(optimise), ..self }
+    }
+
+    /// Tells `watcher` how far the build of the tree is, from 0 to 1, every few thousand primitives and from several
+    /// threads, and goes on as it answers. Optimisation and layout follow, unseen.
+    ///
+    /// ```
+    /// use bvhkit::{Bvh, BuildError, Pace, Sphere};
+    /// let spheres: Vec<Sphere> = (0..50_000).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)).collect();
+    /// let cancelled = |progress| if progress > 0.5 { Pace::Stop } else { Pace::Steady };
+    /// assert_eq!(Bvh::builder().watch(cancelled).build(&spheres).unwrap_err(), BuildError::Stopped);
+    /// ```
+    #[must_use]
+    pub fn watch(self, watcher: impl Fn(f64) -> Pace + Send + Sync + 'static) -> Self {
+        Self { watcher: Some(Watcher(Arc::new(watcher))), ..self }
+    }
+
+    /// After this time the build of the tree hurries: see [`Pace::Hurry`]. The rest takes about as long as half a build
+    /// with [`Quality::Fast`]; a valid tree is always the result.
+    ///
+    /// ```
+    /// use bvhkit::{Bvh, Ray, Sphere};
+    /// use std::time::Duration;
+    /// let spheres: Vec<Sphere> = (0..50_000).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)).collect();
+    /// let bvh = Bvh::builder().time_budget(Duration::ZERO).build(&spheres)?;
+    /// assert_eq!(bvh.closest_hit(&Ray::new([7.0, -1.0, 0.0], [0.0, 1.0, 0.0])).unwrap().index, 7);
+    /// # Ok::<(), bvhkit::BuildError>(())
+    /// ```
+    #[cfg(feature = "std")]
+    #[must_use]
+    pub fn time_budget(self, budget: Duration) -> Self {
+        Self { time_budget: Some(budget), ..self }
     }
 
     /// What to do with invalid primitives, [`OnInvalid::Reject`] unless set.
@@ -305,12 +253,29 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         let References { valid, skipped } = self.references(primitives)?;
         let block_size = L::BLOCK_SIZE;
         let max_leaf_size = self.max_leaf_size.unwrap_or(block_size.max(4));
-        let mut tree = build_tree(valid, &Rules { heuristic: &self.heuristic, max_leaf_size, block_size });
-        if let Some(optimise) = &self.optimise {
+        let rules = Rules { heuristic: &self.heuristic, max_leaf_size, block_size };
+        let pace = self.pace();
+        let watch = Watch::new(&pace, primitives.len());
+        let mut tree = build_tree(valid, &rules, &watch).ok_or(BuildError::Stopped)?;
+        if let (Some(optimise), Pace::Steady) = (&self.optimise, watch.pace()) {
             tree.optimise(optimise);
         }
         let layout = L::lay_out(tree, primitives).ok_or(BuildError::TooLarge)?;
         Ok((layout, skipped))
+    }
+
+    /// What the watcher says, and the clock.
+    fn pace(&self) -> impl Fn(f64) -> Pace + Sync + '_ {
+        #[cfg(feature = "std")]
+        let deadline = self.time_budget.and_then(|budget| Instant::now().checked_add(budget));
+        move |progress| {
+            let pace = self.watcher.as_ref().map_or(Pace::Steady, |Watcher(watcher)| watcher(progress));
+            #[cfg(feature = "std")]
+            if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+                return pace.max(Pace::Hurry);
+            }
+            pace
+        }
     }
 
     fn references(&self, primitives: &[P]) -> Result<References<P::Scalar>, BuildError> {

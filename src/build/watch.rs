@@ -1,0 +1,69 @@
+//! Progress, and what its watcher says.
+
+use alloc::sync::Arc;
+use core::fmt;
+use core::sync::atomic::{AtomicU8, AtomicUsize, Ordering::Relaxed};
+
+/// How a build goes on: what the watcher of [`Builder::watch`](crate::Builder::watch) answers. Once told to hurry or to
+/// stop, a build does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Pace {
+    /// As it was.
+    Steady,
+    /// With whatever is done: what is not divided yet is divided into halves as it lies, and nothing is optimised. A
+    /// valid tree, and a coarser one.
+    Hurry,
+    /// Not at all: [`BuildError::Stopped`](crate::BuildError::Stopped).
+    Stop,
+}
+
+/// Who is told how far a build is, from 0 to 1.
+#[derive(Clone)]
+pub(crate) struct Watcher(pub Arc<dyn Fn(f64) -> Pace + Send + Sync>);
+
+impl fmt::Debug for Watcher {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Watcher")
+    }
+}
+
+/// How far a build is.
+pub(crate) struct Watch<'w> {
+    watcher: &'w (dyn Fn(f64) -> Pace + Sync),
+    total: usize,
+    placed: AtomicUsize,
+    /// The strictest answer so far, as a number.
+    pace: AtomicU8,
+}
+
+impl<'w> Watch<'w> {
+    /// Over a number of primitives.
+    pub fn new(watcher: &'w (dyn Fn(f64) -> Pace + Sync), total: usize) -> Self {
+        Self { watcher, total, placed: AtomicUsize::new(0), pace: AtomicU8::new(Pace::Steady as u8) }
+    }
+
+    /// `count` more have found their leaves.
+    pub fn place(&self, count: usize) {
+        self.placed.fetch_add(count, Relaxed);
+    }
+
+    /// Tells how far the build is, and asks how it goes on.
+    pub fn ask(&self) -> Pace {
+        let pace = match self.pace() {
+            // More references than primitives may be placed.
+            Pace::Steady => (self.watcher)((self.placed.load(Relaxed) as f64 / self.total as f64).min(1.0)),
+            settled => settled,
+        };
+        self.pace.fetch_max(pace as u8, Relaxed);
+        self.pace()
+    }
+
+    /// The strictest answer so far.
+    pub fn pace(&self) -> Pace {
+        match self.pace.load(Relaxed) {
+            0 => Pace::Steady,
+            1 => Pace::Hurry,
+            _ => Pace::Stop,
+        }
+    }
+}
