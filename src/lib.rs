@@ -21,7 +21,7 @@
 //! # The way through
 //!
 //! ```text
-//! primitives -> boxes and centroids -> driver, asking a heuristic -> tree -> layout -> queries -> hits
+//! primitives -> boxes -> driver, asking a heuristic -> tree -> reinsertion -> layout -> queries -> hits
 //! ```
 //!
 //! - What a tree can hold: [`Primitive`], one method; to be hit by rays, [`Intersect`], one more.
@@ -29,8 +29,8 @@
 //! - How exactly a triangle is tested, by type: [`Watertight`], what [`Triangle`] is by itself, [`Fast`]
 //!   or [`Precise`]; each with its errors and its price in the README.
 //! - How it is built: [`Bvh::build`] for the good default, [`Bvh::builder`] for a [`Quality`], one
-//!   of the [`heuristic`]s or your own, the leaf size, threads, and what to do with invalid
-//!   primitives.
+//!   of the [`heuristic`]s or your own, how much to [`Optimise`], the leaf size, threads, a time budget, and what to do
+//!   with invalid primitives.
 //! - How it lies in memory, by type: [`WideTree`] for speed, what [`Bvh`] has by itself, or the binary [`Tree`]; and
 //!   what it is computed with, [`InstructionSet`], the best that the processor has unless told.
 //! - What it answers: [`Bvh::closest_hit`], [`Bvh::any_hit`], [`Bvh::hits`], each with
@@ -57,7 +57,7 @@
 //! # Features
 //!
 //! - `rayon` (default): parallel builds; the tree is the same with and without.
-//! - `std` (default): the standard library's square root. Without it the crate is `no_std` + alloc.
+//! - `std` (default): the standard library's square root, its clock, the processor's features. Without it the crate is `no_std` + alloc.
 //! - `exact`: the exact oracle, `reference::exact`.
 //! - `portable`: [`InstructionSet::Portable`] also where the target has vectors, for tests.
 #![no_std]

@@ -1,7 +1,7 @@
 //! From primitives to a tree: one top-down driver for every heuristic.
 //!
 //! ```text
-//! primitives -> references (box, centroid, index) -> driver, asking the heuristic -> tree
+//! primitives -> references (box, index) -> driver, asking the heuristic -> tree -> reinsertion
 //! ```
 //!
 //! The driver alone partitions references, bounds the depth and falls back to equal halves, so

@@ -3,7 +3,7 @@
 use super::answers::Payload;
 use super::heuristics;
 use super::naive::Naive;
-use bvhkit::{Bvh, Intersect, Ray, Tree};
+use bvhkit::{Bvh, Intersect, Optimise, Ray, Tree};
 
 /// Small, ordinary, and one leaf for everything.
 const LEAF_SIZES: [usize; 5] = [1, 2, 4, 8, usize::MAX];
@@ -15,6 +15,8 @@ pub fn assert_agreement<P: Intersect<Payload: Payload>>(primitives: &[P], rays: 
     for (name, heuristic) in heuristics::all() {
         for max_leaf_size in LEAF_SIZES {
             let builder = Bvh::builder().heuristic(&*heuristic).max_leaf_size(max_leaf_size);
+            let optimise = Optimise { share: 0.5, rounds: 2 };
+            let builder = if [2, 8].contains(&max_leaf_size) { builder.optimise(optimise) } else { builder };
             let options = format_args!("{name}, leaves of {max_leaf_size}");
             naive.assert_same(builder.clone(), options);
             let bvh = naive.assert_same(builder.layout::<Tree<P::Scalar>>(), options);
