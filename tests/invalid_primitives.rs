@@ -11,10 +11,7 @@ mod common {
     pub mod naive;
 }
 
-use bvhkit::{
-    Aabb, BuildError, Bvh, Flaw, Intersect, OnInvalid, OneByOne, PreparedRay, Primitive, Ray, Scalar, Sphere,
-    Triangle,
-};
+use bvhkit::{Aabb, BuildError, Bvh, Flaw, Intersect, OnInvalid, Primitive, Ray, Scalar, Sphere, Triangle};
 use common::agreement::assert_agreement;
 use common::aimed::{aimed, soup, triangles};
 use common::answers::{Answers, Payload};
