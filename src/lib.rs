@@ -89,7 +89,7 @@ pub use build::{Flaw, PrimRef};
 pub use builder::{BuildError, Builder, OnInvalid, Quality};
 pub use bvh::Bvh;
 pub use geometry::{Aabb, Axis, PreparedRay, Ray, RayError, Scalar};
-pub use layout::{Layout, WideTree};
+pub use layout::{CompactTree, Layout, WideTree};
 pub use parallel::ThreadPoolError;
 pub use primitive::{
     Barycentrics, Corners, Fast, FastLeaf, Intersect, LEAF_WIDTH, Leaf, MeshError, MeshTriangle, OneByOne,

@@ -2,12 +2,17 @@
 
 mod blocks;
 mod collapse;
+mod compact;
+mod form;
+mod grid;
+mod packed;
 mod plan;
 mod wide;
 
 pub(crate) use collapse::Contents;
-pub use wide::WideTree;
-pub(crate) use wide::{MAX_PENDING, NOBODY, Reference, WideNode};
+pub(crate) use form::{Form, Node as WideNode};
+pub use wide::{CompactTree, WideTree};
+pub(crate) use wide::{MAX_PENDING, Reference};
 
 use crate::geometry::{Aabb, Scalar};
 use crate::primitive::{Intersect, LEAF_WIDTH, Leaf, Primitive};
@@ -89,7 +94,7 @@ impl<P: Primitive> Layout<P> for Tree<P::Scalar> {
     }
 }
 
-impl<S: Scalar, const N: usize> Outline<S> for WideTree<S, N> {
+impl<S: Scalar, const N: usize, F: Form<S, N>> Outline<S> for WideTree<S, N, F> {
     type Place = Reference;
 
     fn root(&self) -> Option<Reference> {
@@ -102,12 +107,13 @@ impl<S: Scalar, const N: usize> Outline<S> for WideTree<S, N> {
         self.len
     }
     fn bytes(&self) -> usize {
-        self.blocks.bytes()
+        self.blocks.bytes() + self.form.bytes()
     }
     fn open(&self, place: Reference, show: impl FnMut(Part<S, Reference>)) -> bool {
         if place.is_leaf() {
-            let indices = self.leaf(place, self.operands).indices.iter().copied();
-            indices.filter(|&index| index != NOBODY).map(Part::Primitive).for_each(show);
+            let indices = F::indices(self, place, self.form.operands()).iter().copied().enumerate();
+            let indices = indices.filter(|&(lane, index)| F::has(place, lane, index));
+            indices.map(|(_, index)| Part::Primitive(index)).for_each(show);
         } else {
             let node = self.node(place);
             let children = (0..N).filter_map(|lane| node.child(lane));
@@ -117,14 +123,14 @@ impl<S: Scalar, const N: usize> Outline<S> for WideTree<S, N> {
     }
 }
 
-impl<P: Intersect, const N: usize> Layout<P> for WideTree<P::Scalar, N>
+impl<P: Intersect, const N: usize, F: Form<P::Scalar, N>> Layout<P> for WideTree<P::Scalar, N, F>
 where
     Count<N>: Width,
 {
     const BLOCK_SIZE: usize = if <P::Leaf as Leaf<_, _>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
 
     fn lay_out(tree: Tree<P::Scalar>, primitives: &[P]) -> Option<Self> {
-        Self::new(&tree, &primitives)
+        Self::new(tree, &primitives)
     }
 }
 

@@ -64,7 +64,8 @@ impl core::error::Error for InvariantError {}
 
 /// Checks every invariant of a hierarchy over the primitives with `indices`, whose boxes are `aabb_of(index)`.
 ///
-/// Terminates for any content, in O(nodes + primitives).
+/// Terminates for any content, in O(nodes + primitives): no path is longer than `MAX_DEPTH`. Boxes need not lie in each other, only
+/// around all primitives below them, which is what queries rely on: those of a compact tree are rounded outward each by itself.
 pub(crate) fn check<S: Scalar, H: Outline<S>>(
     hierarchy: &H,
     indices: impl Iterator<Item = usize>,
@@ -78,16 +79,17 @@ pub(crate) fn check<S: Scalar, H: Outline<S>>(
     // A tree has fewer inner nodes than primitives: more must have been seen before.
     let (mut budget, mut error) = (hierarchy.len(), None);
     let mut open: Vec<_> = hierarchy.root().map(|root| (root, hierarchy.aabb(), 0)).into_iter().collect();
+    // The boxes on the way to a place, by depth: what is below a place is popped before what was pushed before it.
+    let mut path = Vec::with_capacity(MAX_DEPTH + 1);
     while let Some((place, aabb, depth)) = open.pop() {
         if depth > MAX_DEPTH {
             return Err(InvariantError::TooDeep { depth });
         }
+        path.truncate(depth);
+        path.push(aabb);
         let (mut below, mut is_leaf) = (Aabb::EMPTY, false);
         let exists = hierarchy.open(place, |part| match part {
-            Part::Child(aabb, place) => {
-                below = below.union(aabb);
-                open.push((place, aabb, depth + 1));
-            }
+            Part::Child(aabb, place) => open.push((place, aabb, depth + 1)),
             Part::Primitive(index) => {
                 is_leaf = true;
                 match leaves_of.get_mut(index as usize) {
@@ -108,7 +110,7 @@ pub(crate) fn check<S: Scalar, H: Outline<S>>(
         if !is_leaf {
             budget = budget.checked_sub(1).ok_or(InvariantError::SharedNode { depth })?;
         }
-        if !aabb.contains(&below) {
+        if let Some(depth) = path.iter().position(|aabb| !aabb.contains(&below)) {
             return Err(InvariantError::LooseBox { depth });
         }
     }

@@ -1,0 +1,188 @@
+//! Nodes with their children's boxes in 8 bits a plane, and leaves that are ranges of slots.
+//!
+//! ```text
+//! blocks:  | node | node | ... |                           depth first
+//! node:    origin x, y, z; scale x, y, z; places of N children: x min, x max, y min, y max, z min, z max;
+//!          N references; which lanes have children
+//! indices: those of all primitives, by slot
+//! ```
+//!
+//! A plane lies at origin + place * scale: see [`Grid`].
+
+use super::form::{Form, Node};
+use super::grid::Grid;
+use super::wide::{NOBODY, Reference, WideTree};
+use crate::geometry::{Aabb, Scalar, min};
+use crate::primitive::{Intersect, LEAF_WIDTH, Leaf};
+use crate::simd::Lanes;
+use alloc::vec::Vec;
+use core::mem::MaybeUninit;
+
+/// The form for few bytes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compact {
+    /// The input's index of each slot's primitive, and [`LEAF_WIDTH`] more, so that as many follow the first slot of any leaf.
+    indices: Vec<u32>,
+}
+
+/// An inner node: for 16 children in `f32` three cache lines, where there were seven.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct CompactNode<S, const N: usize> {
+    grid: Grid<S>,
+    /// By axis; minima, then maxima.
+    places: [[[u8; N]; 2]; 3],
+    children: [Reference; N],
+    /// Bits of the lanes with children.
+    lanes: u64,
+}
+
+/// Without gaps.
+const fn is_plain<S, const N: usize>() -> bool {
+    size_of::<CompactNode<S, N>>() == 6 * size_of::<S>() + 6 * N + 4 * N + 8
+}
+
+const _: () = assert!(is_plain::<f32, 16>() && is_plain::<f32, 8>() && is_plain::<f32, 4>());
+const _: () = assert!(is_plain::<f64, 16>() && is_plain::<f64, 8>() && is_plain::<f64, 4>());
+const _: () = assert!(size_of::<CompactNode<f32, 16>>() == 192 && size_of::<CompactNode<f32, 8>>() == 112);
+
+// SAFETY: scalars and integers, without gaps: see above.
+unsafe impl<S: Scalar, const N: usize> Node<S, N> for CompactNode<S, N> {
+    const ALIGN: usize = 64;
+    const ROW: usize = N;
+
+    fn new(children: &[(Aabb<S>, Reference)]) -> Self {
+        let everything = children.iter().fold(Aabb::EMPTY, |all, (aabb, _)| all.union(*aabb));
+        let grid = Grid::over(&everything);
+        let mut node = Self {
+            grid,
+            places: [[[0; N]; 2]; 3],
+            children: [Reference::NONE; N],
+            lanes: (1 << children.len()) - 1,
+        };
+        for (lane, (aabb, child)) in children.iter().enumerate() {
+            for (axis, [min, max]) in node.grid.around(aabb).into_iter().enumerate() {
+                node.places[axis][0][lane] = min;
+                node.places[axis][1][lane] = max;
+            }
+            node.children[lane] = *child;
+        }
+        node
+    }
+
+    #[inline(always)]
+    fn children(&self) -> &[Reference; N] {
+        &self.children
+    }
+
+    #[inline(always)]
+    fn lanes(&self) -> u32 {
+        self.lanes as u32
+    }
+
+    #[inline(always)]
+    unsafe fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, places: [usize; 2]) -> [L; 2] {
+        const { assert!(N == L::COUNT) }
+        let [first, last] = places;
+        let rows = self.places.as_ptr().cast::<u8>();
+        let (origin, scale) = (L::splat(isa, self.grid.origin[axis]), L::splat(isa, self.grid.scale[axis]));
+        // SAFETY: rows of N bytes, at these places by the caller's word.
+        let [first, last] =
+            unsafe { [L::load_bytes(isa, rows.add(first)), L::load_bytes(isa, rows.add(last))] };
+        [origin + first * scale, origin + last * scale]
+    }
+
+    fn child(&self, lane: usize) -> Option<(Aabb<S>, Reference)> {
+        let at = |side: usize| [0, 1, 2].map(|axis| self.grid.at(axis, self.places[axis][side][lane]));
+        // No box of a child is infinite.
+        let aabb = Aabb { min: at(0), max: at(1).map(|max| min(max, S::MAX)) };
+        (self.lanes >> lane & 1 != 0).then_some((aabb, self.children[lane]))
+    }
+}
+
+/// Operands up to which they are gathered: primitives with more are asked one by one.
+const ROOM: usize = 16;
+
+/// Where operands are gathered.
+#[repr(align(64))]
+pub struct Room<S>([MaybeUninit<[S; LEAF_WIDTH]>; ROOM]);
+
+impl<S: Scalar, const N: usize> Form<S, N> for Compact {
+    type Node = CompactNode<S, N>;
+    type Room = Room<S>;
+    const COPIES: bool = false;
+
+    fn new(mut indices: Vec<u32>, _: usize) -> Self {
+        indices.reserve_exact(LEAF_WIDTH);
+        indices.extend([NOBODY; LEAF_WIDTH]);
+        indices.shrink_to_fit();
+        Self { indices }
+    }
+
+    fn operands(&self) -> usize {
+        0
+    }
+
+    fn bytes(&self) -> usize {
+        size_of::<u32>() * self.indices.capacity()
+    }
+
+    #[inline(always)]
+    fn tests_at_once(operands: usize) -> bool {
+        operands > 0 && operands <= ROOM
+    }
+
+    #[inline(always)]
+    fn prefetch(tree: &WideTree<S, N, Self>, place: Reference) {
+        if !place.is_leaf() {
+            tree.blocks.prefetch(place.offset(), size_of::<CompactNode<S, N>>());
+        }
+    }
+
+    #[inline(always)]
+    fn indices(tree: &WideTree<S, N, Self>, leaf: Reference, _: usize) -> &[u32; LEAF_WIDTH] {
+        let (first, _) = leaf.slots();
+        debug_assert!(first + LEAF_WIDTH <= tree.form.indices.len());
+        // SAFETY: a leaf's slots are the tree's, by construction of the tree, and so many indices follow any (`new`).
+        unsafe { &*tree.form.indices.as_ptr().add(first).cast() }
+    }
+
+    #[inline(always)]
+    fn has(leaf: Reference, lane: usize, _: u32) -> bool {
+        lane < leaf.slots().1
+    }
+
+    #[inline(always)]
+    fn room() -> Room<S> {
+        Room([const { MaybeUninit::uninit() }; ROOM])
+    }
+
+    #[inline(always)]
+    fn rows<'m, P: Intersect<Scalar = S>>(
+        tree: &'m WideTree<S, N, Self>,
+        leaf: Reference,
+        primitives: &[P],
+        room: &'m mut Room<S>,
+    ) -> &'m [[S; LEAF_WIDTH]] {
+        let operands = const {
+            let operands = <P::Leaf as Leaf<S, P::Payload>>::OPERANDS;
+            if operands <= ROOM { operands } else { 0 }
+        };
+        let rows = &mut room.0[..operands];
+        for row in rows.iter_mut() {
+            row.write([S::from_f64(f64::NAN); LEAF_WIDTH]);
+        }
+        // SAFETY: all have been written.
+        let rows: &mut [[S; LEAF_WIDTH]] = unsafe { &mut *(core::ptr::from_mut(rows) as *mut _) };
+        let (_, count) = leaf.slots();
+        let mut values = [S::ZERO; ROOM];
+        let values = &mut values[..operands];
+        for (lane, &index) in Self::indices(tree, leaf, operands).iter().enumerate().take(count) {
+            primitives[index as usize].put_operands(values);
+            for (row, value) in rows.iter_mut().zip(values.iter()) {
+                row[lane] = *value;
+            }
+        }
+        rows
+    }
+}
