@@ -31,7 +31,7 @@
 //! - How it is built: [`Bvh::build`] for the good default, [`Bvh::builder`] for a [`Quality`], one
 //!   of the [`heuristic`]s or your own, the leaf size, threads, and what to do with invalid
 //!   primitives.
-//! - How it lies in memory, by type: [`WideTree`] for speed, what [`Bvh`] has by itself, or the binary [`Tree`]; and
+//! - How it lies in memory, by type: [`WideTree`] for speed, what [`Bvh`] has by itself, [`CompactTree`] for few bytes, or the binary [`Tree`]; and
 //!   what it is computed with, [`InstructionSet`], the best that the processor has unless told.
 //! - What it answers: [`Bvh::closest_hit`], [`Bvh::any_hit`], [`Bvh::hits`], each with
 //!   [`Counters`] on request; [`Bvh::closest_hits`] and [`Bvh::any_hits`] for many rays.

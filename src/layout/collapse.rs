@@ -73,7 +73,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
     /// leaf of 2^32 primitives adds no more than 30 / log2(N) to it.
     pub(crate) fn new(tree: Tree<S>, contents: &impl Contents<S>) -> Option<Self> {
         const { assert!((MAX_DEPTH + 30).div_ceil(N.ilog2() as usize) * (N - 1) <= MAX_PENDING) }
-        let plan = Plan::<S, N>::new(&tree, F::tests_at_once(contents.operands()));
+        let plan = Plan::<S, N>::new(&tree, F::leaf_cost(contents.operands()));
         let cheapest = |node, roots: &mut _| plan.cheapest(node, roots);
         let by_levels = |node, roots: &mut _| plan.by_levels(node, roots);
         let arrangement = match Self::arrange(&plan, cheapest, contents) {

@@ -1,5 +1,6 @@
 //! How the nodes and leaves of a wide tree are written: what the traversal, which is the same for all, asks of them.
 
+use super::plan::LeafCost;
 use super::wide::{Reference, WideTree};
 use crate::geometry::{Aabb, Scalar};
 use crate::primitive::{Intersect, LEAF_WIDTH};
@@ -26,6 +27,9 @@ pub trait Form<S: Scalar, const N: usize>: Clone + PartialEq + Send + Sync + 'st
 
     /// Whether primitives with so many operands are tested all at once; else one by one.
     fn tests_at_once(operands: usize) -> bool;
+
+    /// What it costs to visit a leaf of such primitives.
+    fn leaf_cost(operands: usize) -> LeafCost;
 
     /// Asks for a node or a leaf to be brought into the cache.
     fn prefetch(tree: &WideTree<S, N, Self>, place: Reference);

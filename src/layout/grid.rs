@@ -72,12 +72,15 @@ fn scale<S: Scalar>(min: S, max: S) -> S {
     if min == max {
         return S::ZERO;
     }
-    // Of halves, which do not overflow: in [1, 2] times that power of two, or subnormal.
+    // Of halves, which do not overflow: at most twice that power of two.
     let half = max * S::HALF - min * S::HALF;
-    // The half, and so the 128th part of the whole, is above it: too small to reach, or the least that does.
-    let mut scale = S::ONE / half.inverse_power_of_two() * S::from_f64(1.0 / 128.0);
-    while at(min, scale, 255) < max {
-        scale = scale + scale;
+    let power = S::ONE / half.inverse_power_of_two();
+    // The extent is at most four times the power, which 255 steps of a 32nd part cover: two doublings at the most.
+    let mut scale = power * S::from_f64(1.0 / 128.0);
+    for _ in 0..2 {
+        if at(min, scale, 255) < max {
+            scale = scale + scale;
+        }
     }
     scale
 }

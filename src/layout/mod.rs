@@ -19,7 +19,8 @@ use crate::primitive::{Intersect, LEAF_WIDTH, Leaf, Primitive};
 use crate::simd::{Count, Width};
 use crate::tree::{Child, Node, Tree};
 
-/// How a hierarchy lies in memory: [`WideTree`], the default, for speed; [`Tree`], as it was built.
+/// How a hierarchy lies in memory: [`WideTree`], the default, for speed; [`CompactTree`], for few bytes; [`Tree`], as it was
+/// built.
 ///
 /// A type parameter of [`Bvh`](crate::Bvh), chosen by [`Builder::layout`](crate::Builder::layout). What is not chosen
 /// is not compiled. Answers are the same bits in all.
@@ -127,7 +128,8 @@ impl<P: Intersect, const N: usize, F: Form<P::Scalar, N>> Layout<P> for WideTree
 where
     Count<N>: Width,
 {
-    const BLOCK_SIZE: usize = if <P::Leaf as Leaf<_, _>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
+    /// Where operands have to be gathered first, each counts.
+    const BLOCK_SIZE: usize = if F::COPIES && <P::Leaf as Leaf<_, _>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
 
     fn lay_out(tree: Tree<P::Scalar>, primitives: &[P]) -> Option<Self> {
         Self::new(tree, &primitives)

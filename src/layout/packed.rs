@@ -9,6 +9,7 @@
 //! Children that there are not have boxes that no ray meets, primitives that there are not have operands NaN.
 
 use super::form::{Form, Node};
+use super::plan::LeafCost;
 use super::wide::{NOBODY, Reference, WideTree};
 use crate::geometry::{Aabb, Scalar};
 use crate::primitive::{Intersect, LEAF_WIDTH, Leaf};
@@ -99,6 +100,10 @@ impl<S: Scalar, const N: usize> Form<S, N> for Packed {
     #[inline(always)]
     fn tests_at_once(operands: usize) -> bool {
         operands > 0
+    }
+
+    fn leaf_cost(operands: usize) -> LeafCost {
+        if operands > 0 { LeafCost { block: 0.5, primitive: 0.0 } } else { LeafCost::ONE_BY_ONE }
     }
 
     #[inline(always)]

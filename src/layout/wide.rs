@@ -98,7 +98,33 @@ pub struct WideTree<S = f32, const N: usize = 16, F = Packed> {
     pub(super) is_ordinary: bool,
 }
 
-/// The layout for few bytes.
+/// The layout for few bytes, where a scene outgrows the cache or the memory: a [`WideTree`] whose nodes keep their children's
+/// boxes in 8 bits a plane, rounded outward, and whose leaves are indices.
+///
+/// On 279,163 triangles of sponza it takes 8.3 bytes a triangle, where a [`WideTree`] takes 61; all in, 44.3 with
+/// triangles that it owns, 16.3 with borrowed ones.
+///
+/// ```text
+/// node:    origin and scale of a grid on each axis; places of N children's planes, a byte each; N references
+/// indices: of all primitives, 4 bytes each
+/// ```
+///
+/// Answers are the same bits, since boxes only grow. Closest hits are found at 0.60 to 0.81 of the [`WideTree`]'s rate, any hits at 0.61
+/// to 0.71 (sponza and dragon, which still fit the cache): planes are computed from their places, and leaves
+/// fetch what they need of their primitives from where those lie. So it pays to have them in an order in which neighbours in space
+/// are neighbours in memory, as those of most files are.
+///
+/// At most 2^28 primitives. 16 children a node are better than 8, in time and in bytes.
+///
+/// ```
+/// use bvhkit::{Bvh, CompactTree, Triangle};
+///
+/// let triangles = vec![Triangle::new([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])];
+/// let bvh: Bvh<&Triangle, CompactTree> = Bvh::builder().layout().build(&triangles)?;
+/// # Ok::<(), bvhkit::BuildError>(())
+/// ```
+///
+/// After Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, HPG 2017.
 pub type CompactTree<S = f32, const N: usize = 16> = WideTree<S, N, Compact>;
 
 /// No path through a tree leaves more children behind.

@@ -110,7 +110,7 @@ pub(crate) fn check<S: Scalar, H: Outline<S>>(
         if !is_leaf {
             budget = budget.checked_sub(1).ok_or(InvariantError::SharedNode { depth })?;
         }
-        if let Some(depth) = path.iter().position(|aabb| !aabb.contains(&below)) {
+        if let Some(depth) = path.iter().rposition(|aabb| !aabb.contains(&below)) {
             return Err(InvariantError::LooseBox { depth });
         }
     }
