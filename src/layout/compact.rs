@@ -13,7 +13,7 @@
 //!
 //! What lies in no leaf is fetched from the primitives: [`rows`](Form::rows) writes their operands into rows on the thread's
 //! stack, in which they are tested all at once. Refused: asking them one by one (in trees with leaves of 6 primitives -4 to -14 %, of 3.4
-//! within the noise to -8 %); the next 8 slots whatever the leaf's size, without a branch (-3 to -6 %, for more primitives are touched);
+//! from +3 to -8 %, which is noise in part); the next 8 slots whatever the leaf's size, without a branch (-3 to -6 %, for more primitives are touched);
 //! 8 children a node instead of 16 (-10 to -20 %, and a byte a triangle more); leaves as full as those that lie packed
 //! (shadow rays -20 %, and 0.8 bytes less).
 

@@ -109,7 +109,7 @@ pub struct WideTree<S = f32, const N: usize = 16, F = Packed> {
 /// indices: of all primitives, 4 bytes each
 /// ```
 ///
-/// Answers are the same bits, since boxes only grow. Closest hits are found at 0.60 to 0.81 of the [`WideTree`]'s rate, any hits at 0.61
+/// Answers are the same bits, since boxes only grow. Closest hits are found at 0.60 to 0.81 of the [`WideTree`]'s rate, any hits at 0.58
 /// to 0.71 (sponza and dragon, which still fit the cache): planes are computed from their places, and leaves
 /// fetch what they need of their primitives from where those lie. So it pays to have them in an order in which neighbours in space
 /// are neighbours in memory, as those of most files are.
