@@ -31,7 +31,8 @@
 //! - How it is built: [`Bvh::build`] for the good default, [`Bvh::builder`] for a [`Quality`], one
 //!   of the [`heuristic`]s or your own, how much to [`Optimise`], the leaf size, threads, a time budget, and what to do
 //!   with invalid primitives.
-//! - How it lies in memory, by type: [`WideTree`] for speed, what [`Bvh`] has by itself, or the binary [`Tree`]; and
+//! - How it lies in memory, by type: [`WideTree`] for speed, what [`Bvh`] has by itself, [`CompactTree`] for few bytes, or the
+//!   binary [`Tree`]; and
 //!   what it is computed with, [`InstructionSet`], the best that the processor has unless told.
 //! - What it answers: [`Bvh::closest_hit`], [`Bvh::any_hit`], [`Bvh::hits`], each with
 //!   [`Counters`] on request; [`Bvh::closest_hits`] and [`Bvh::any_hits`] for many rays.
@@ -89,7 +90,7 @@ pub use build::{Flaw, Gain, Optimise, Pace, PrimRef};
 pub use builder::{BuildError, Builder, OnInvalid, Quality};
 pub use bvh::Bvh;
 pub use geometry::{Aabb, Axis, PreparedRay, Ray, RayError, Scalar};
-pub use layout::{Layout, WideTree};
+pub use layout::{CompactTree, Layout, WideTree};
 pub use parallel::ThreadPoolError;
 pub use primitive::{
     Barycentrics, Corners, Fast, FastLeaf, Intersect, LEAF_WIDTH, Leaf, MeshError, MeshTriangle, OneByOne,

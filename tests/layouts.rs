@@ -17,8 +17,8 @@ mod generate {
 
 use bvhkit::heuristic::Heuristic;
 use bvhkit::{
-    Barycentrics, Builder, Bvh, Fast, InstructionSet, Intersect, OnInvalid, OneByOne, Precise, Quality, Ray,
-    Scalar, Traverse, Tree, Triangle, Watertight, WatertightLeaf, WideTree, reference,
+    Barycentrics, Builder, Bvh, CompactTree, Fast, InstructionSet, Intersect, OnInvalid, OneByOne, Precise,
+    Quality, Ray, Scalar, Traverse, Tree, Triangle, Watertight, WatertightLeaf, WideTree, reference,
 };
 use common::alone::Alone;
 use common::answers::{Key, Payload, key};
@@ -60,8 +60,9 @@ fn in_every_layout<'a, P: Intersect<Payload: Payload>>(
     naive.assert_same(builder.clone().layout::<Tree<P::Scalar>>(), options);
     naive.assert_same(builder.clone().layout::<WideTree<P::Scalar, 4>>(), options);
     naive.assert_same(builder.clone().layout::<WideTree<P::Scalar, 8>>(), options);
+    naive.assert_same(builder.clone().layout::<CompactTree<P::Scalar>>(), options);
     naive.assert_same(builder, options);
-    4
+    5
 }
 
 /// The layout that is taken by default.

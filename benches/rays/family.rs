@@ -6,7 +6,9 @@ use crate::shared::agreement::{Answers, Disagreements, Hit, bare};
 use crate::shared::obvhs::{Peer, Traversal, convert};
 use crate::support::scenes::NamedScene;
 use crate::tracer::Tracer;
-use bvhkit::{Bvh, Fast, Intersect, Precise, Ray, Traverse, Tree, Triangle, WideTree, reference};
+use bvhkit::{
+    Bvh, CompactTree, Fast, Intersect, Precise, Ray, Traverse, Tree, Triangle, WideTree, reference,
+};
 use obvhs::BvhBuildParams;
 use std::rc::Rc;
 
@@ -61,6 +63,7 @@ pub fn all(scene: &NamedScene, rays: usize) -> Vec<Family> {
         ours::<_, WideTree<f32, 4>>("wide 4", &fast),
         ours::<_, WideTree<f32, 8>>("wide 8", &fast),
         ours::<_, WideTree<f32, 16>>("wide 16", &fast),
+        ours::<_, CompactTree>("compact", &fast),
         ours::<_, Tree>("binary", &fast),
         peer("obvhs BVH2", triangles, Peer::bvh2),
         peer("obvhs CWBVH", triangles, Peer::cwbvh),

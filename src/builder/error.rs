@@ -24,7 +24,8 @@ pub enum BuildError {
     },
     /// `max_leaf_size` is 0.
     ZeroLeafSize,
-    /// The layout needs more memory than its references can tell apart: see [`WideTree`](crate::WideTree).
+    /// The layout needs more memory than its references can tell apart: see [`WideTree`](crate::WideTree) and
+    /// [`CompactTree`](crate::CompactTree).
     TooLarge,
     /// The processor, or this build of the crate, does not have the instruction set asked for.
     NoInstructionSet(InstructionSet),

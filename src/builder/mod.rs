@@ -165,7 +165,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     }
 
     /// The largest number of primitives in a leaf of the binary tree: unless set, [`LEAF_WIDTH`](crate::LEAF_WIDTH), 8,
-    /// where the layout tests so many at once, else 4; surface area heuristics make smaller ones where that pays. Any
+    /// where leaves have so many side by side, else 4; surface area heuristics make smaller ones where that pays. Any
     /// number from 1 on; above the number of primitives it means that number. A [`WideTree`] joins leaves where that is
     /// cheaper, and divides larger ones: its own hold up to `LEAF_WIDTH`, whatever is set here.
     #[must_use]

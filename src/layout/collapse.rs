@@ -1,8 +1,9 @@
 //! The wide tree, as planned: first where every block lies, then what is in it.
 
 use super::blocks::{Blocks, Part};
+use super::form::{Form, Node};
 use super::plan::Plan;
-use super::wide::{MAX_PENDING, NOBODY, Reference, WideNode, WideTree};
+use super::wide::{MAX_PENDING, NOBODY, Reference, WideTree};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
 use crate::primitive::LEAF_WIDTH;
@@ -69,16 +70,16 @@ enum Failure {
     TooDeep,
 }
 
-impl<S: Scalar, const N: usize> WideTree<S, N> {
+impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
     /// None if the references cannot tell so many places apart.
     ///
     /// No path through it leaves more than [`MAX_PENDING`] children behind or is longer than [`MAX_DEPTH`]: if the cheapest
     /// collapse has one, as that of a hostile heuristic's tree may, the tree is collapsed by levels instead. Then a path of
     /// at most `MAX_DEPTH` binary nodes becomes one of `MAX_DEPTH / log2(N)`, which leaves N - 1 children at each; and a
     /// leaf of 2^32 primitives adds no more than 30 / log2(N) to it.
-    pub(crate) fn new(tree: &Tree<S>, contents: &impl Contents<S>) -> Option<Self> {
+    pub(crate) fn new(tree: Tree<S>, contents: &impl Contents<S>) -> Option<Self> {
         const { assert!((MAX_DEPTH + 30).div_ceil(N.ilog2() as usize) * (N - 1) <= MAX_PENDING) }
-        let plan = Plan::<S, N>::new(tree, contents.operands() > 0);
+        let plan = Plan::<S, N>::new(&tree, F::leaf_cost(contents.operands()));
         let cheapest = |node, roots: &mut _| plan.cheapest(node, roots);
         let by_levels = |node, roots: &mut _| plan.by_levels(node, roots);
         let arrangement = match Self::arrange(&plan, cheapest, contents) {
@@ -88,18 +89,15 @@ impl<S: Scalar, const N: usize> WideTree<S, N> {
         let arrangement = arrangement.ok()?;
         let coordinates = [tree.aabb.min, tree.aabb.max];
         Some(Self {
-            blocks: Self::fill(&arrangement, tree, contents),
+            blocks: Self::fill(&arrangement, &tree, contents),
             root: arrangement.root,
             aabb: tree.aabb,
-            operands: contents.operands(),
             len: tree.len(),
             references: tree.indices.len(),
+            form: F::new(tree.indices, contents.operands()),
             is_ordinary: coordinates.as_flattened().iter().all(|x| x.abs() < S::LARGE_AREA),
         })
     }
-
-    /// Rows of planes that are as long as a line begin with one.
-    const NODE_ALIGN: usize = if size_of::<[S; N]>() >= 64 { 64 } else { 32 };
 
     /// Decides where every block lies: a node, its leaves, then its inner children depth first.
     fn arrange(
@@ -111,7 +109,7 @@ impl<S: Scalar, const N: usize> WideTree<S, N> {
         let mut all = Arrangement { blocks: Vec::new(), bytes: 0, children: Vec::new(), root: None };
         let Some(root) = tree.root() else { return Ok(all) };
         if plan.is_leaf(root, &tree.aabb) {
-            all.root = Some(all.leaf(plan.slots(root), contents.operands()));
+            all.root = Some(all.leaf::<F, N>(plan.slots(root), contents.operands())?);
             return Ok(all);
         }
         let mut open = alloc::vec![Open { child: root, aabb: tree.aabb, place: None, depth: 0, pending: 0 }];
@@ -129,14 +127,11 @@ impl<S: Scalar, const N: usize> WideTree<S, N> {
             // The child to begin with in the highest lane: from there it is taken first if any hit will do.
             roots.sort_by_cached_key(|(_, aabb)| plan.area(aabb).to_ordered_bits());
             let first = all.children.len();
-            let offset = all.allocate(
-                What::Node(first..first + roots.len()),
-                size_of::<WideNode<S, N>>(),
-                Self::NODE_ALIGN,
-            );
+            let offset =
+                all.allocate(What::Node(first..first + roots.len()), size_of::<F::Node>(), F::Node::ALIGN);
             for &(child, aabb) in &roots {
                 let reference = if plan.is_leaf(child, &aabb) {
-                    all.leaf(plan.slots(child), contents.operands())
+                    all.leaf::<F, N>(plan.slots(child), contents.operands())?
                 } else {
                     let (place, pending) = (Some(all.children.len()), pending + roots.len() - 1);
                     open.push(Open { child, aabb, place, depth: depth + 1, pending });
@@ -179,11 +174,8 @@ impl<S: Scalar, const N: usize> WideTree<S, N> {
                 }
                 match &block.what {
                     What::Node(children) => {
-                        let mut node = WideNode::<S, N>::EMPTY;
-                        for (lane, &(aabb, reference)) in all.children[children.clone()].iter().enumerate() {
-                            node.put(lane, aabb, reference);
-                        }
-                        // SAFETY: a node is scalars and integers without gaps, of which any bytes are some.
+                        let node = F::Node::new(&all.children[children.clone()]);
+                        // SAFETY: nodes are plain data.
                         unsafe { part.get_mut(block.offset, 1)[0] = node }
                     }
                     What::Leaf(slots) => {
@@ -206,11 +198,18 @@ impl<S: Scalar> Arrangement<S> {
         offset
     }
 
-    fn leaf(&mut self, (count, first): (u32, u32), operands: usize) -> Reference {
+    fn leaf<F: Form<S, N>, const N: usize>(
+        &mut self,
+        (count, first): (u32, u32),
+        operands: usize,
+    ) -> Result<Reference, Failure> {
+        if !F::COPIES {
+            return Reference::of_slots(first, count).ok_or(Failure::TooLarge);
+        }
         let slots = first as usize..first as usize + count as usize;
         let bytes = operands * size_of::<[S; LEAF_WIDTH]>() + size_of::<[u32; LEAF_WIDTH]>();
         let align = if operands > 0 { size_of::<[S; LEAF_WIDTH]>().min(64) } else { 32 };
-        Reference::leaf(self.allocate(What::Leaf(slots), bytes, align))
+        Ok(Reference::leaf(self.allocate(What::Leaf(slots), bytes, align)))
     }
 }
 

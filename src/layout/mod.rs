@@ -2,19 +2,25 @@
 
 mod blocks;
 mod collapse;
+mod compact;
+mod form;
+mod grid;
+mod packed;
 mod plan;
 mod wide;
 
 pub(crate) use collapse::Contents;
-pub use wide::WideTree;
-pub(crate) use wide::{MAX_PENDING, NOBODY, Reference, WideNode};
+pub(crate) use form::{Form, Node as WideNode};
+pub use wide::{CompactTree, WideTree};
+pub(crate) use wide::{MAX_PENDING, Reference};
 
 use crate::geometry::{Aabb, Scalar};
 use crate::primitive::{Intersect, LEAF_WIDTH, Leaf, Primitive};
 use crate::simd::{Count, Width};
 use crate::tree::{Child, Node, Tree};
 
-/// How a hierarchy lies in memory: [`WideTree`], the default, for speed; [`Tree`], as it was built.
+/// How a hierarchy lies in memory: [`WideTree`], the default, for speed; [`CompactTree`], for few bytes; [`Tree`], as it was
+/// built.
 ///
 /// A type parameter of [`Bvh`](crate::Bvh), chosen by [`Builder::layout`](crate::Builder::layout). What is not chosen
 /// is not compiled. Answers are the same bits in all.
@@ -94,7 +100,7 @@ impl<P: Primitive> Layout<P> for Tree<P::Scalar> {
     }
 }
 
-impl<S: Scalar, const N: usize> Outline<S> for WideTree<S, N> {
+impl<S: Scalar, const N: usize, F: Form<S, N>> Outline<S> for WideTree<S, N, F> {
     type Place = Reference;
 
     fn root(&self) -> Option<Reference> {
@@ -110,12 +116,13 @@ impl<S: Scalar, const N: usize> Outline<S> for WideTree<S, N> {
         self.references
     }
     fn bytes(&self) -> usize {
-        self.blocks.bytes()
+        self.blocks.bytes() + self.form.bytes()
     }
     fn open(&self, place: Reference, show: impl FnMut(Part<S, Reference>)) -> bool {
         if place.is_leaf() {
-            let indices = self.leaf(place, self.operands).indices.iter().copied();
-            indices.filter(|&index| index != NOBODY).map(Part::Primitive).for_each(show);
+            let indices = F::indices(self, place, self.form.operands()).iter().copied().enumerate();
+            let indices = indices.filter(|&(lane, index)| F::has(place, lane, index));
+            indices.map(|(_, index)| Part::Primitive(index)).for_each(show);
         } else {
             let node = self.node(place);
             let children = (0..N).filter_map(|lane| node.child(lane));
@@ -125,14 +132,15 @@ impl<S: Scalar, const N: usize> Outline<S> for WideTree<S, N> {
     }
 }
 
-impl<P: Intersect, const N: usize> Layout<P> for WideTree<P::Scalar, N>
+impl<P: Intersect, const N: usize, F: Form<P::Scalar, N>> Layout<P> for WideTree<P::Scalar, N, F>
 where
     Count<N>: Width,
 {
-    const BLOCK_SIZE: usize = if <P::Leaf as Leaf<_, _>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
+    /// Where operands have to be gathered first, each counts.
+    const BLOCK_SIZE: usize = if F::COPIES && <P::Leaf as Leaf<_, _>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
 
     fn lay_out(tree: Tree<P::Scalar>, primitives: &[P]) -> Option<Self> {
-        Self::new(&tree, &primitives)
+        Self::new(tree, &primitives)
     }
 }
 

@@ -20,12 +20,26 @@ use crate::tree::{Child, MAX_DEPTH, Tree};
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// The cost of a node, in units of which a leaf of packed primitives costs a half.
+/// The cost of a node: the unit of all others.
 const NODE: f32 = 1.0;
-/// The cost of a leaf whose primitives are tested side by side.
-const PACKED_LEAF: f32 = 0.5;
-/// The cost of a primitive in a leaf that asks them one by one.
-const PRIMITIVE: f32 = 0.5;
+
+/// What it costs to visit a leaf.
+#[derive(Clone, Copy)]
+pub struct LeafCost {
+    /// For each block of primitives that are tested at once.
+    pub block: f32,
+    /// For each primitive.
+    pub primitive: f32,
+}
+
+impl LeafCost {
+    /// Of primitives that are asked one by one.
+    pub const ONE_BY_ONE: Self = Self { block: 0.0, primitive: 0.5 };
+
+    fn of(self, count: u32) -> f32 {
+        self.block * count.div_ceil(LEAF_WIDTH as u32) as f32 + self.primitive * count as f32
+    }
+}
 
 /// Subtrees of so many nodes are weighed at the same time.
 const SUBTREE: usize = 1 << 11;
@@ -37,7 +51,7 @@ pub(super) struct Plan<'t, S, const N: usize> {
     weights: Vec<Weight<N>>,
     /// 1 / the largest extent.
     scale: S,
-    is_packed: bool,
+    leaf: LeafCost,
 }
 
 /// What is known of all that is below a binary node.
@@ -52,10 +66,10 @@ struct Weight<const N: usize> {
 }
 
 impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
-    pub fn new(tree: &'t Tree<S>, is_packed: bool) -> Self {
+    pub fn new(tree: &'t Tree<S>, leaf: LeafCost) -> Self {
         let unknown = Weight { forest: [0.0; N], roots: 0, slots: (0, 0) };
         let mut weights = alloc::vec![unknown; tree.nodes.len()];
-        let plan = Self { tree, weights: Vec::new(), scale: tree.aabb.area_scale(), is_packed };
+        let plan = Self { tree, weights: Vec::new(), scale: tree.aabb.area_scale(), leaf };
         let (top, subtrees) = plan.divide();
         let (mut parts, mut rest, mut done) = (Vec::with_capacity(subtrees.len()), weights.as_mut_slice(), 0);
         for nodes in subtrees {
@@ -122,20 +136,13 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
     }
 
     fn weight_of_leaf(&self, leaf: Child, area: f32) -> Weight<N> {
-        let blocks = leaf.count.div_ceil(LEAF_WIDTH as u32);
-        let cost = if self.is_packed { PACKED_LEAF * blocks as f32 } else { PRIMITIVE * leaf.count as f32 };
+        let cost = self.leaf.of(leaf.count);
         Weight { forest: [area * cost; N], roots: 1, slots: (leaf.count, leaf.first) }
     }
 
     /// The cost of all below an inner node as one leaf.
     fn leaf_cost(&self, area: f32, count: u32) -> f32 {
-        if count as usize > LEAF_WIDTH {
-            f32::INFINITY
-        } else if self.is_packed {
-            area * PACKED_LEAF
-        } else {
-            area * PRIMITIVE * count as f32
-        }
+        if count as usize > LEAF_WIDTH { f32::INFINITY } else { area * self.leaf.of(count) }
     }
 
     pub fn area(&self, aabb: &Aabb<S>) -> f32 {

@@ -42,6 +42,11 @@ impl<P: Intersect> Visitor<P> for Any<'_, P> {
     const IN_ORDER: bool = false;
 
     #[inline(always)]
+    fn primitives(&self) -> &[P] {
+        self.primitives
+    }
+
+    #[inline(always)]
     fn limit(&self) -> P::Scalar {
         self.t_max
     }

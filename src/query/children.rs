@@ -12,7 +12,7 @@ use crate::simd::Lanes;
 /// one by one.
 #[inline(always)]
 pub(super) fn nearest<S: Scalar, L: Lanes<S>, const N: usize>(
-    node: &WideNode<S, N>,
+    node: &impl WideNode<S, N>,
     near: L,
     mut met: u32,
     t_min: S,
@@ -21,9 +21,9 @@ pub(super) fn nearest<S: Scalar, L: Lanes<S>, const N: usize>(
     if t_min >= S::ZERO {
         let (references, entries) = pending.windows();
         let references = Reference::window(references);
-        if let Some(lane) = near.sort(met, Reference::bits(&node.children), references, entries) {
+        if let Some(lane) = near.sort(met, Reference::bits(node.children()), references, entries) {
             pending.grow(met.count_ones() as usize - 1);
-            return node.children[lane as usize % N];
+            return node.children()[lane as usize % N];
         }
     }
     let mut distances = Distances([S::ZERO; 16]);
@@ -33,37 +33,37 @@ pub(super) fn nearest<S: Scalar, L: Lanes<S>, const N: usize>(
     let (mut nearest, farthest) =
         if distance(second) < distance(first) { (second, first) } else { (first, second) };
     let base = pending.len();
-    pending.push(node.children[farthest % N], distance(farthest));
+    pending.push(node.children()[farthest % N], distance(farthest));
     while met != 0 {
         let mut lane = next_lane(&mut met);
         if distance(lane) < distance(nearest) {
             core::mem::swap(&mut lane, &mut nearest);
         }
-        pending.push(node.children[lane % N], distance(lane));
+        pending.push(node.children()[lane % N], distance(lane));
         pending.sink(base);
     }
-    node.children[nearest % N]
+    node.children()[nearest % N]
 }
 
 /// The last of two children or more; the others are pushed as they lie in the node.
 #[inline(always)]
 pub(super) fn last<S: Scalar, L: Lanes<S>, const N: usize>(
     isa: L::Isa,
-    node: &WideNode<S, N>,
+    node: &impl WideNode<S, N>,
     mut met: u32,
     pending: &mut Pending<'_, S>,
 ) -> Reference {
     let last = met.ilog2();
     met ^= 1 << last;
     let (references, _) = pending.windows();
-    if L::compress(isa, met, Reference::bits(&node.children), Reference::window(references)) {
+    if L::compress(isa, met, Reference::bits(node.children()), Reference::window(references)) {
         pending.grow(met.count_ones() as usize);
     } else {
         while met != 0 {
-            pending.push(node.children[next_lane(&mut met) % N], S::ZERO);
+            pending.push(node.children()[next_lane(&mut met) % N], S::ZERO);
         }
     }
-    node.children[last as usize % N]
+    node.children()[last as usize % N]
 }
 
 #[inline(always)]

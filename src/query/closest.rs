@@ -53,6 +53,11 @@ impl<P: Intersect> Visitor<P> for Closest<'_, P> {
     const IN_ORDER: bool = true;
 
     #[inline(always)]
+    fn primitives(&self) -> &[P] {
+        self.primitives
+    }
+
+    #[inline(always)]
     fn limit(&self) -> P::Scalar {
         self.limit
     }

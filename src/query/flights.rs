@@ -7,7 +7,7 @@ use super::Visitor;
 use super::pending::{Memory, Pending};
 use super::wide::{SlabLanes, first, step, suits};
 use crate::geometry::{PreparedRay, Ray, Shear, Slabs};
-use crate::layout::{Reference, WideTree};
+use crate::layout::{Form, Reference, WideTree};
 use crate::primitive::Intersect;
 use crate::simd::{Count, Width};
 use alloc::vec::Vec;
@@ -30,8 +30,15 @@ struct Flight<P: Intersect, V> {
 }
 
 #[inline(always)]
-pub(super) fn traverse_in_turns<'r, P: Intersect, I: Simd, V: Visitor<P>, const N: usize>(
-    tree: &WideTree<P::Scalar, N>,
+pub(super) fn traverse_in_turns<
+    'r,
+    P: Intersect,
+    I: Simd,
+    V: Visitor<P>,
+    F: Form<P::Scalar, N>,
+    const N: usize,
+>(
+    tree: &WideTree<P::Scalar, N, F>,
     isa: I,
     mut rays: impl Iterator<Item = (usize, &'r Ray<P::Scalar>)>,
     start: impl Fn(&Ray<P::Scalar>) -> V,
@@ -46,7 +53,7 @@ pub(super) fn traverse_in_turns<'r, P: Intersect, I: Simd, V: Visitor<P>, const 
             let PreparedRay { slabs, shear, .. } = prepared;
             match first(tree, &prepared, visitor.limit()) {
                 Some(next) => {
-                    let suits = suits::<P, N>(tree, &prepared);
+                    let suits = suits::<P, F, N>(tree, &prepared);
                     return Some(Flight::<P, V> {
                         number,
                         ray,
@@ -76,7 +83,10 @@ pub(super) fn traverse_in_turns<'r, P: Intersect, I: Simd, V: Visitor<P>, const 
         for (slot, stack) in flights.iter_mut().zip(&mut stacks) {
             let Some(flight) = slot else { continue };
             let prepared = PreparedRay::of_parts(&flight.ray, flight.slabs, flight.shear);
-            let lanes = SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new(isa, &flight.slabs);
+            let lanes = SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new::<F::Node, N>(
+                isa,
+                &flight.slabs,
+            );
             let mut pending = Pending::new(stack, flight.waiting);
             let visitor = &mut flight.visitor;
             match step(
@@ -92,7 +102,7 @@ pub(super) fn traverse_in_turns<'r, P: Intersect, I: Simd, V: Visitor<P>, const 
                 &mut (),
             ) {
                 Some(next) => {
-                    tree.prefetch(next);
+                    F::prefetch(tree, next);
                     flight.next = next;
                     flight.waiting = pending.len();
                 }

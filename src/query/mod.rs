@@ -85,6 +85,8 @@ pub trait Traverse<P: Intersect>: Layout<P> {
 pub trait Visitor<P: Intersect>: Copy {
     /// Whether nearer boxes should come first.
     const IN_ORDER: bool;
+    /// All primitives, by index.
+    fn primitives(&self) -> &[P];
     /// What begins beyond this t is of no interest any more.
     fn limit(&self) -> P::Scalar;
     /// A primitive in a leaf whose box the ray enters before the limit.

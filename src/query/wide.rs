@@ -1,4 +1,4 @@
-//! The traversal loop of the wide tree.
+//! The traversal loop of the wide trees.
 //!
 //! ```text
 //! step: an inner node tests the boxes of all its children at once
@@ -15,13 +15,13 @@ use super::counters::Recorder;
 use super::pending::{Memory, Pending};
 use super::{Traverse, Visitor, flights};
 use crate::geometry::{PreparedRay, Ray, Scalar, Slabs};
-use crate::layout::{NOBODY, Outline, Reference, WideNode, WideTree};
+use crate::layout::{Form, Outline, Reference, WideNode, WideTree};
 use crate::primitive::{Found, Intersect, LEAF_WIDTH, Leaf, Operands};
 use crate::simd::{Count, Lanes, Width};
 use core::ops::ControlFlow;
 use fearless_simd::Simd;
 
-impl<P: Intersect, const N: usize> Traverse<P> for WideTree<P::Scalar, N>
+impl<P: Intersect, const N: usize, F: Form<P::Scalar, N>> Traverse<P> for WideTree<P::Scalar, N, F>
 where
     Count<N>: Width,
 {
@@ -37,8 +37,9 @@ where
     ) {
         let prepared = ray.prepare();
         let Some(mut next) = first(self, &prepared, visitor.limit()) else { return };
-        let suits = suits::<P, N>(self, &prepared);
-        let lanes = SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new(isa, &prepared.slabs);
+        let suits = suits::<P, F, N>(self, &prepared);
+        let lanes =
+            SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new::<F::Node, N>(isa, &prepared.slabs);
         let mut memory = Memory::new();
         let mut pending = Pending::new(&mut memory, 0);
         while let Some(place) =
@@ -62,8 +63,8 @@ where
 
 /// Where a ray begins, if it has to.
 #[inline(always)]
-pub(super) fn first<S: Scalar, const N: usize>(
-    tree: &WideTree<S, N>,
+pub(super) fn first<S: Scalar, F: Form<S, N>, const N: usize>(
+    tree: &WideTree<S, N, F>,
     ray: &PreparedRay<S>,
     limit: S,
 ) -> Option<Reference> {
@@ -83,8 +84,8 @@ pub(super) fn first<S: Scalar, const N: usize>(
 
 /// Whether the leaves' tests in lanes are good for this ray.
 #[inline(always)]
-pub(super) fn suits<P: Intersect, const N: usize>(
-    tree: &WideTree<P::Scalar, N>,
+pub(super) fn suits<P: Intersect, F: Form<P::Scalar, N>, const N: usize>(
+    tree: &WideTree<P::Scalar, N, F>,
     ray: &PreparedRay<P::Scalar>,
 ) -> bool {
     tree.is_ordinary() && <P::Leaf as Leaf<_, _>>::suits(ray)
@@ -93,9 +94,17 @@ pub(super) fn suits<P: Intersect, const N: usize>(
 /// Visits a place, and tells which is next, if any is.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "what a loop has in registers")]
-pub(super) fn step<P: Intersect, L, I: Simd, V: Visitor<P>, R: Recorder, const N: usize>(
+pub(super) fn step<
+    P: Intersect,
+    L,
+    I: Simd,
+    V: Visitor<P>,
+    R: Recorder,
+    F: Form<P::Scalar, N>,
+    const N: usize,
+>(
     isa: I,
-    tree: &WideTree<P::Scalar, N>,
+    tree: &WideTree<P::Scalar, N, F>,
     place: Reference,
     prepared: &PreparedRay<P::Scalar>,
     ray: &Ray<P::Scalar>,
@@ -110,7 +119,7 @@ where
 {
     if place.is_leaf() {
         recorder.leaf();
-        if leaf::<P, V, R, I, N>(isa, tree, place, prepared, ray, suits, visitor, recorder).is_break() {
+        if leaf::<P, V, R, I, F, N>(isa, tree, place, prepared, ray, suits, visitor, recorder).is_break() {
             return None;
         }
     } else {
@@ -125,7 +134,7 @@ where
         };
         if met != 0 {
             return Some(if met & (met - 1) == 0 {
-                node.children[met.trailing_zeros() as usize % N]
+                node.children()[met.trailing_zeros() as usize % N]
             } else if V::IN_ORDER {
                 nearest(node, near, met, lanes.t_min, pending)
             } else {
@@ -138,9 +147,9 @@ where
 
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "what a loop has in registers")]
-fn leaf<P: Intersect, V: Visitor<P>, R: Recorder, I: Simd, const N: usize>(
+fn leaf<P: Intersect, V: Visitor<P>, R: Recorder, I: Simd, F: Form<P::Scalar, N>, const N: usize>(
     isa: I,
-    tree: &WideTree<P::Scalar, N>,
+    tree: &WideTree<P::Scalar, N, F>,
     leaf: Reference,
     prepared: &PreparedRay<P::Scalar>,
     ray: &Ray<P::Scalar>,
@@ -149,42 +158,45 @@ fn leaf<P: Intersect, V: Visitor<P>, R: Recorder, I: Simd, const N: usize>(
     recorder: &mut R,
 ) -> ControlFlow<()> {
     let operands = <P::Leaf as Leaf<P::Scalar, P::Payload>>::OPERANDS;
-    let block = tree.leaf(leaf, operands);
-    for &index in block.indices {
-        if index != NOBODY {
+    let indices = F::indices(tree, leaf, operands);
+    for (lane, &index) in indices.iter().enumerate() {
+        if F::has(leaf, lane, index) {
             recorder.primitive();
         }
     }
-    if operands == 0 {
-        for &index in block.indices {
-            if index == NOBODY {
+    if !F::tests_at_once(operands) {
+        for (lane, &index) in indices.iter().enumerate() {
+            if !F::has(leaf, lane, index) {
                 break;
             }
             visitor.primitive(index, prepared)?;
         }
         return ControlFlow::Continue(());
     }
-    let operands = Operands::<_, <Count<8> as Width>::Lanes<P::Scalar, I>>::new(isa, block.operands);
+    let mut room = F::room();
+    let rows = F::rows(tree, leaf, visitor.primitives(), &mut room);
+    let operands = Operands::<_, <Count<8> as Width>::Lanes<P::Scalar, I>>::new(isa, rows);
     let found = if suits {
         P::Leaf::test(&operands, prepared, visitor.limit())
     } else {
-        let all = block.indices.iter().rev().fold(0, |all, &index| all << 1 | u32::from(index != NOBODY));
+        let lanes = indices.iter().enumerate().rev();
+        let all = lanes.fold(0, |all, (lane, &index)| all << 1 | u32::from(F::has(leaf, lane, index)));
         Found::to_be_asked(all, &operands)
     };
     if found.sure != 0 {
-        visitor.found(&found, block.indices)?;
+        visitor.found(&found, indices)?;
     }
     let mut unsure = found.unsure;
     if unsure == 0 {
         return ControlFlow::Continue(());
     }
     if <P::Leaf as Leaf<_, _>>::SETTLES {
-        let (told, flow) = ask_anew(*visitor, unsure, block.indices, ray);
+        let (told, flow) = ask_anew(*visitor, unsure, indices, ray);
         *visitor = told;
         return flow;
     }
     while unsure != 0 {
-        visitor.primitive(block.indices[next_lane(&mut unsure) % LEAF_WIDTH], prepared)?;
+        visitor.primitive(indices[next_lane(&mut unsure) % LEAF_WIDTH], prepared)?;
     }
     ControlFlow::Continue(())
 }
@@ -223,10 +235,10 @@ pub(super) struct SlabLanes<S, L> {
 
 impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
     #[inline(always)]
-    pub fn new(isa: L::Isa, slabs: &Slabs<S>) -> Self {
+    pub fn new<T: WideNode<S, N>, const N: usize>(isa: L::Isa, slabs: &Slabs<S>) -> Self {
         let splat = |[x, y, z]: [S; 3]| [L::splat(isa, x), L::splat(isa, y), L::splat(isa, z)];
         let [x, y, z] = slabs.negative;
-        let row = |axis: usize, is_max: bool| (2 * axis + usize::from(is_max)) * size_of::<S>() * L::COUNT;
+        let row = |axis: usize, is_max: bool| (2 * axis + usize::from(is_max)) * T::ROW;
         Self {
             origin: splat(slabs.origin),
             inv_near: splat(slabs.inv_near),
@@ -240,32 +252,29 @@ impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
 
     /// Where the ray enters the children's boxes, from t_min on, and which of them it meets up to `limit`.
     #[inline(always)]
-    fn enter<const N: usize>(&self, node: &WideNode<S, N>, limit: S) -> (L, u32) {
-        const { assert!(N == L::COUNT) }
+    fn enter<const N: usize>(&self, node: &impl WideNode<S, N>, limit: S) -> (L, u32) {
         let isa = self.origin[0].isa();
         let (mut near, mut far) = (L::splat(isa, self.t_min), L::splat(isa, limit));
         for axis in 0..3 {
-            // SAFETY: rows of N scalars, at the places of `new`.
-            let (first, last) = unsafe {
-                let rows = node.planes.as_ptr().cast::<u8>();
-                (
-                    L::load(isa, rows.add(self.first[axis]).cast()),
-                    L::load(isa, rows.add(self.last[axis]).cast()),
-                )
-            };
+            // SAFETY: the places of `new`.
+            let [first, last] = unsafe { node.planes::<L>(isa, axis, [self.first[axis], self.last[axis]]) };
             let (first, last) = (first - self.origin[axis], last - self.origin[axis]);
             let (inv_near, inv_far) = (self.inv_near[axis], self.inv_far[axis]);
             near = (first * inv_near).max(near);
             far = (last * inv_far).min(far);
         }
-        (near, L::bits(near.le(far)))
+        (near, L::bits(near.le(far)) & node.lanes())
     }
 }
 
 /// The same for a ray that also looks behind its origin, where the padding has the other sign.
 #[cold]
 #[inline(never)]
-fn enter_behind<S: Scalar, const N: usize>(node: &WideNode<S, N>, ray: &Ray<S>, limit: S) -> ([S; 16], u32) {
+fn enter_behind<S: Scalar, T: WideNode<S, N>, const N: usize>(
+    node: &T,
+    ray: &Ray<S>,
+    limit: S,
+) -> ([S; 16], u32) {
     let slabs = Slabs::new(ray);
     let (mut entries, mut met) = ([S::ZERO; 16], 0);
     for (lane, entry) in entries.iter_mut().enumerate().take(N) {

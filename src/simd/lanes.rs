@@ -32,6 +32,12 @@ pub trait Lanes<S: Scalar>:
     /// They are there, and initialised.
     #[doc(hidden)]
     unsafe fn load(isa: Self::Isa, from: *const S) -> Self;
+    /// Reads `COUNT` bytes, as scalars.
+    ///
+    /// # Safety
+    /// They are there, and initialised.
+    #[doc(hidden)]
+    unsafe fn load_bytes(isa: Self::Isa, from: *const u8) -> Self;
     /// Writes `COUNT` scalars.
     #[doc(hidden)]
     fn store(self, to: &mut [S]);
@@ -93,6 +99,12 @@ macro_rules! lanes {
             unsafe fn load(isa: I, from: *const $scalar) -> Self {
                 // SAFETY: the caller's, and an array asks for no more alignment than a scalar.
                 Self::load_array_ref(isa, unsafe { &*from.cast::<[$scalar; $count]>() })
+            }
+            #[inline(always)]
+            unsafe fn load_bytes(isa: I, from: *const u8) -> Self {
+                // SAFETY: the caller's, and an array of bytes asks for no alignment.
+                let bytes = unsafe { *from.cast::<[u8; $count]>() };
+                Self::load_array(isa, bytes.map(<$scalar>::from))
             }
             #[inline(always)]
             fn store(self, to: &mut [$scalar]) {
@@ -251,6 +263,11 @@ impl<S: Scalar, L: Lanes<S>> Lanes<S> for Pair<L> {
     unsafe fn load(isa: L::Isa, from: *const S) -> Self {
         // SAFETY: the caller's: there are twice as many.
         unsafe { Self(L::load(isa, from), L::load(isa, from.add(L::COUNT))) }
+    }
+    #[inline(always)]
+    unsafe fn load_bytes(isa: L::Isa, from: *const u8) -> Self {
+        // SAFETY: the caller's: there are twice as many.
+        unsafe { Self(L::load_bytes(isa, from), L::load_bytes(isa, from.add(L::COUNT))) }
     }
     #[inline(always)]
     fn store(self, to: &mut [S]) {

@@ -249,7 +249,8 @@ fn least<S: Scalar, I: Simd, const N: usize>(isa: I, costs: &[[S; N]; 3]) -> Opt
     }
     let smallest =
         (0..LANES).fold(S::INFINITY, |least, lane| crate::geometry::min(smallest.lane(lane), least));
-    if !(smallest < S::INFINITY) {
+    // No cost is NaN here: the minimum has left those out.
+    if smallest == S::INFINITY {
         return None;
     }
     for axis in 0..3 {

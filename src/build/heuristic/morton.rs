@@ -73,10 +73,10 @@ impl<S: Scalar> Grid<S> {
 
 /// Two zeros before each of the lowest 16 bits.
 fn spread(bits: u64) -> u64 {
-    let bits = (bits | bits << 16) & 0x0000_00ff_0000_ff;
-    let bits = (bits | bits << 8) & 0x0000_f00f_00f0_0f;
-    let bits = (bits | bits << 4) & 0x000c_30c3_0c30_c3;
-    (bits | bits << 2) & 0x0024_9249_2492_49
+    let bits = (bits | bits << 16) & 0x0000_0000_ff00_00ff;
+    let bits = (bits | bits << 8) & 0x0000_00f0_0f00_f00f;
+    let bits = (bits | bits << 4) & 0x0000_0c30_c30c_30c3;
+    (bits | bits << 2) & 0x0000_2492_4924_9249
 }
 
 /// By code, those of equal codes as they lie: a radix sort, eleven bits at a time from the lowest on.

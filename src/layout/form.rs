@@ -1,0 +1,81 @@
+//! How the nodes and leaves of a wide tree are written: what the traversal, which is the same for all, asks of them.
+
+use super::plan::LeafCost;
+use super::wide::{Reference, WideTree};
+use crate::geometry::{Aabb, Scalar};
+use crate::primitive::{Intersect, LEAF_WIDTH};
+use crate::simd::Lanes;
+use alloc::vec::Vec;
+
+/// A way to write nodes and leaves.
+pub trait Form<S: Scalar, const N: usize>: Clone + PartialEq + Send + Sync + 'static {
+    type Node: Node<S, N>;
+    /// Where operands are gathered that do not lie in the tree.
+    type Room;
+
+    /// Whether leaves are blocks with copies of their primitives' operands; else they are ranges of slots.
+    const COPIES: bool;
+
+    /// For a tree with these primitives by slot, of so many operands each.
+    fn new(indices: Vec<u32>, operands: usize) -> Self;
+
+    /// How many scalars of each primitive lie in its leaf.
+    fn operands(&self) -> usize;
+
+    /// Bytes of memory beside the blocks.
+    fn bytes(&self) -> usize;
+
+    /// Whether primitives with so many operands are tested all at once; else one by one.
+    fn tests_at_once(operands: usize) -> bool;
+
+    /// What it costs to visit a leaf of such primitives.
+    fn leaf_cost(operands: usize) -> LeafCost;
+
+    /// Asks for a node or a leaf to be brought into the cache.
+    fn prefetch(tree: &WideTree<S, N, Self>, place: Reference);
+
+    /// The input's indices of a leaf's primitives, in the lanes that it [`has`](Self::has).
+    fn indices(tree: &WideTree<S, N, Self>, leaf: Reference, operands: usize) -> &[u32; LEAF_WIDTH];
+
+    /// Whether there is a primitive in a lane, where `index` lies.
+    fn has(leaf: Reference, lane: usize, index: u32) -> bool;
+
+    /// Room for operands, not cleared.
+    fn room() -> Self::Room;
+
+    /// The operands of a leaf's primitives, row by row, NaN where there is no primitive.
+    fn rows<'m, P: Intersect<Scalar = S>>(
+        tree: &'m WideTree<S, N, Self>,
+        leaf: Reference,
+        primitives: &[P],
+        room: &'m mut Self::Room,
+    ) -> &'m [[S; LEAF_WIDTH]];
+}
+
+/// An inner node.
+///
+/// # Safety
+/// Plain data: any bytes are a node, and a node is all bytes, without gaps.
+pub unsafe trait Node<S: Scalar, const N: usize>: Copy + Send + Sync {
+    /// Where nodes begin.
+    const ALIGN: usize;
+    /// Bytes from one row of planes to the next; by axis, minima, then maxima.
+    const ROW: usize;
+
+    /// With these children in the lowest lanes.
+    fn new(children: &[(Aabb<S>, Reference)]) -> Self;
+
+    fn children(&self) -> &[Reference; N];
+
+    /// Bits of the lanes in which there may be children: no ray meets the boxes in others of them.
+    fn lanes(&self) -> u32;
+
+    /// Two rows of planes, by their places in bytes.
+    ///
+    /// # Safety
+    /// They are multiples of [`ROW`](Self::ROW), of this axis.
+    unsafe fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, places: [usize; 2]) -> [L; 2];
+
+    /// The box and the place of a child; none if there is none in this lane.
+    fn child(&self, lane: usize) -> Option<(Aabb<S>, Reference)>;
+}

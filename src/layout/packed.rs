@@ -1,0 +1,139 @@
+//! Nodes with their children's boxes as they are, and leaves whose primitives lie side by side.
+//!
+//! ```text
+//! blocks: | node | leaf leaf leaf | node | leaf ... |      depth first, leaves right behind their node
+//! node:   planes of N children: x min, x max, y min, y max, z min, z max; N references
+//! leaf:   operands of 8 primitives, row by row; their 8 indices
+//! ```
+//!
+//! Children that there are not have boxes that no ray meets, primitives that there are not have operands NaN.
+
+use super::form::{Form, Node};
+use super::plan::LeafCost;
+use super::wide::{NOBODY, Reference, WideTree};
+use crate::geometry::{Aabb, Scalar};
+use crate::primitive::{Intersect, LEAF_WIDTH, Leaf};
+use crate::simd::Lanes;
+use alloc::vec::Vec;
+
+/// The form for speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Packed {
+    /// How many scalars of each primitive lie in its leaf.
+    operands: usize,
+}
+
+/// An inner node.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub struct WideNode<S, const N: usize> {
+    /// By axis; minima, then maxima.
+    planes: [[[S; N]; 2]; 3],
+    children: [Reference; N],
+}
+
+const _: () = assert!(size_of::<WideNode<f32, 16>>() == 448 && size_of::<WideNode<f64, 16>>() == 832);
+const _: () = assert!(size_of::<WideNode<f32, 8>>() == 224 && size_of::<WideNode<f64, 8>>() == 416);
+
+// SAFETY: scalars and integers, without gaps.
+unsafe impl<S: Scalar, const N: usize> Node<S, N> for WideNode<S, N> {
+    /// Rows of planes that are as long as a line begin with one.
+    const ALIGN: usize = if size_of::<[S; N]>() >= 64 { 64 } else { 32 };
+    const ROW: usize = size_of::<[S; N]>();
+
+    fn new(children: &[(Aabb<S>, Reference)]) -> Self {
+        let nothing = [[S::INFINITY; N], [S::NEG_INFINITY; N]];
+        let mut node = Self { planes: [nothing; 3], children: [Reference::NONE; N] };
+        for (lane, &(aabb, child)) in children.iter().enumerate() {
+            for axis in 0..3 {
+                node.planes[axis][0][lane] = aabb.min[axis];
+                node.planes[axis][1][lane] = aabb.max[axis];
+            }
+            node.children[lane] = child;
+        }
+        node
+    }
+
+    #[inline(always)]
+    fn children(&self) -> &[Reference; N] {
+        &self.children
+    }
+
+    #[inline(always)]
+    fn lanes(&self) -> u32 {
+        u32::MAX
+    }
+
+    #[inline(always)]
+    unsafe fn planes<L: Lanes<S>>(&self, isa: L::Isa, _: usize, places: [usize; 2]) -> [L; 2] {
+        const { assert!(N == L::COUNT) }
+        let [first, last] = places;
+        let rows = self.planes.as_ptr().cast::<u8>();
+        // SAFETY: rows of N scalars, at these places by the caller's word.
+        unsafe { [L::load(isa, rows.add(first).cast()), L::load(isa, rows.add(last).cast())] }
+    }
+
+    fn child(&self, lane: usize) -> Option<(Aabb<S>, Reference)> {
+        let aabb =
+            Aabb { min: self.planes.map(|axis| axis[0][lane]), max: self.planes.map(|axis| axis[1][lane]) };
+        (!aabb.is_empty()).then_some((aabb, self.children[lane]))
+    }
+}
+
+impl<S: Scalar, const N: usize> Form<S, N> for Packed {
+    type Node = WideNode<S, N>;
+    type Room = ();
+    const COPIES: bool = true;
+
+    fn new(_: Vec<u32>, operands: usize) -> Self {
+        Self { operands }
+    }
+
+    fn operands(&self) -> usize {
+        self.operands
+    }
+
+    fn bytes(&self) -> usize {
+        0
+    }
+
+    #[inline(always)]
+    fn tests_at_once(operands: usize) -> bool {
+        operands > 0
+    }
+
+    fn leaf_cost(operands: usize) -> LeafCost {
+        if operands > 0 { LeafCost { block: 0.5, primitive: 0.0 } } else { LeafCost::ONE_BY_ONE }
+    }
+
+    #[inline(always)]
+    fn prefetch(tree: &WideTree<S, N>, place: Reference) {
+        tree.blocks.prefetch(place.offset(), size_of::<WideNode<S, N>>());
+    }
+
+    #[inline(always)]
+    fn indices(tree: &WideTree<S, N>, leaf: Reference, operands: usize) -> &[u32; LEAF_WIDTH] {
+        debug_assert_eq!(tree.form.operands, operands);
+        // SAFETY: indices are any bytes, and a leaf lies there: see the tree. They follow its operands' rows.
+        unsafe { tree.blocks.get(leaf.offset() + operands * size_of::<[S; LEAF_WIDTH]>()) }
+    }
+
+    #[inline(always)]
+    fn has(_: Reference, _: usize, index: u32) -> bool {
+        index != NOBODY
+    }
+
+    #[inline(always)]
+    fn room() {}
+
+    #[inline(always)]
+    fn rows<'m, P: Intersect<Scalar = S>>(
+        tree: &'m WideTree<S, N>,
+        leaf: Reference,
+        _: &[P],
+        _: &'m mut (),
+    ) -> &'m [[S; LEAF_WIDTH]] {
+        // SAFETY: scalars are any bytes, and a leaf lies there: see the tree. It begins with its operands' rows.
+        unsafe { tree.blocks.get_slice(leaf.offset(), <P::Leaf as Leaf<_, P::Payload>>::OPERANDS) }
+    }
+}
