@@ -21,7 +21,7 @@ fn triangles(n: usize) -> Vec<Fast<Triangle>> {
     let mut point = |size: f32| [0.0; 3].map(|_: f32| rng.random_range(-size..size));
     let add = |a: [f32; 3], b: [f32; 3]| [0, 1, 2].map(|k| a[k] + b[k]);
     let triangle = |i: usize| {
-        let (center, b, c) = (point(10.0), point(if i % 10 == 0 { 10.0 } else { 0.3 }), point(0.3));
+        let (center, b, c) = (point(10.0), point(if i.is_multiple_of(10) { 10.0 } else { 0.3 }), point(0.3));
         Fast(Triangle::new(center, add(center, b), add(center, c)))
     };
     (0..n).map(triangle).collect()
