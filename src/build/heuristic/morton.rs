@@ -122,7 +122,7 @@ mod tests {
             .map(|i| {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
                 // Few different ones, in all digits.
-                ((state >> 60) * 0x1111_1111_1111 & ((1 << 48) - 1), i)
+                (((state >> 60) * 0x1111_1111_1111) & ((1 << 48) - 1), i)
             })
             .collect();
         let mut expected = codes.clone();
