@@ -5,9 +5,9 @@ mod common {
     pub mod hostile;
 }
 
-use bvhkit::heuristic::{BuildNode, Heuristic, Median, SpatialSah, Split};
+use bvhkit::heuristic::{Heuristic, Median, SpatialSah};
 use bvhkit::{
-    Axis, BuildError, Bvh, Fast, Hit, MAX_DEPTH, Optimise, Pace, Quality, Ray, Tree, Triangle, reference,
+    BuildError, Bvh, Fast, Hit, MAX_DEPTH, Optimise, Pace, Quality, Ray, Tree, Triangle, reference,
 };
 use common::heuristics;
 use rand::{RngExt, SeedableRng};
@@ -78,25 +78,6 @@ fn reinsertion_takes_any_size_and_any_share() {
             assert!(gain.after <= gain.before, "{n} at {share}: {gain:?}");
         }
     }
-}
-
-/// One by one from the left: as deep a tree as there can be.
-struct Chain;
-
-impl Heuristic<f32> for Chain {
-    fn split(&self, _: &BuildNode<'_>) -> Split {
-        Split::Count { axis: Axis::X, left: 1 }
-    }
-}
-
-#[test]
-fn reinsertion_keeps_the_depth_bound_where_it_was_reached() {
-    let mut bvh =
-        Bvh::builder().heuristic(Chain).max_leaf_size(1).layout::<Tree>().build(triangles(5000)).unwrap();
-    assert_eq!(bvh.report().max_depth, MAX_DEPTH);
-    let gain = bvh.optimise(&Optimise { share: 1.0, rounds: 8 });
-    bvh.check().unwrap();
-    assert!(gain.moves > 100 && bvh.report().max_depth <= MAX_DEPTH, "{gain:?}");
 }
 
 #[test]

@@ -200,3 +200,53 @@ impl<S: Scalar> Linked<S> {
         (tree.nodes, tree.indices) = (nodes, indices);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::heuristic::{BuildNode, Heuristic, Split};
+    use crate::{Bvh, Sphere};
+
+    /// Two halves, then one by one: two chains.
+    struct Chains;
+
+    impl Heuristic<f32> for Chains {
+        fn split(&self, node: &BuildNode<'_>) -> Split {
+            Split::InOrder { left: if node.depth == 0 { node.references.len() / 2 } else { 1 } }
+        }
+    }
+
+    #[test]
+    fn no_move_makes_a_circle_or_too_long_a_path() {
+        let spheres = (0..100u8).map(|i| Sphere::new([f32::from(i), 0.0, 0.0], 0.5));
+        let builder = Bvh::builder().heuristic(Chains).max_leaf_size(1).layout::<Tree>();
+        let mut linked = Linked::new(builder.build(spheres).unwrap().layout()).unwrap();
+        let depth = |linked: &Linked<f32>, node| linked.depth_outside(node, u32::MAX).unwrap();
+        let mut apply = |node: fn(&Linked<f32>) -> u32| {
+            let mut touched = alloc::vec![false; linked.len()];
+            let leaves = linked.children.len() as u32..linked.len() as u32;
+            let below_right =
+                leaves.filter(|&leaf| linked.depth_outside(leaf, linked.children[0][0]).is_some());
+            let beside = below_right.max_by_key(|&leaf| depth(&linked, leaf)).unwrap();
+            let moved = linked.apply(&Move { node: node(&linked), beside, gain: 1.0 }, &mut touched);
+            (moved, linked.nodes[0].height as usize, depth(&linked, beside))
+        };
+        let right_chain = |linked: &Linked<f32>| linked.children[linked.children[0][1] as usize][1];
+        assert!(!apply(right_chain).0, "the end of the right chain is below it");
+        let second_of_the_left = |linked: &Linked<f32>| {
+            let left = linked.children[0][0] as usize;
+            linked.children[linked.children[left][1] as usize][0]
+        };
+        // The right chain grows by one each time, until it may not.
+        let mut moves = 0;
+        loop {
+            let (moved, height, depth) = apply(second_of_the_left);
+            assert_eq!(height, depth);
+            if !moved {
+                break;
+            }
+            moves += 1;
+        }
+        assert_eq!((moves, linked.nodes[0].height as usize), (MAX_DEPTH - 50, MAX_DEPTH));
+    }
+}
