@@ -9,7 +9,6 @@
 mod aim;
 mod bvh_peer;
 mod judge;
-mod labels;
 mod mesh;
 mod miss;
 mod ours;
@@ -28,10 +27,15 @@ mod closed;
 #[path = "../shared/columns.rs"]
 #[expect(dead_code, reason = "this bench has its own way with numbers")]
 mod columns;
+#[path = "../shared/environment.rs"]
+mod environment;
 #[path = "../shared/extent.rs"]
 mod extent;
 #[path = "../shared/file.rs"]
+#[expect(unused_imports, reason = "the loader's unit tests are left out here")]
 mod file;
+#[path = "../shared/labels.rs"]
+mod labels;
 #[path = "../shared/obvhs.rs"]
 #[expect(dead_code, reason = "any hit is not judged")]
 mod obvhs_peer;
@@ -105,7 +109,7 @@ fn main() -> anyhow::Result<()> {
     std::fs::create_dir_all(&folder)?;
     picture::draw(&folder.join("accuracy.svg"), &contestants, &speeds, &outcomes)?;
 
-    if let Some(scene) = file::scene()? {
+    if let Some(scene) = environment::scene()? {
         let mesh = Mesh::new(scene.name, scene.triangles);
         let outcome = judge(&mesh, Place::HOME, &contestants, extent.amount);
         table::print_file(&contestants, &mesh, &outcome);

@@ -55,7 +55,7 @@ fn main() -> anyhow::Result<()> {
 
 fn run(extent: &Extent) -> anyhow::Result<()> {
     let methods: Vec<Method> = ours::methods().into_iter().chain(peer::methods()).collect();
-    let file = shared::file::scene()?;
+    let file = shared::environment::scene()?;
 
     let mut criterion = shared::criterion::brief_criterion();
     for &size in extent.sizes {

@@ -1,8 +1,8 @@
 //! Criterion's groups: one for each kind of ray and scene, on one thread and in natural order.
 
-use crate::family::Family;
 use crate::shared::criterion::flat_group;
-use crate::tracer::Way;
+use crate::tracing::family::Family;
+use crate::tracing::tracer::Way;
 use criterion::{Criterion, Throughput};
 
 pub fn measure(criterion: &mut Criterion, scene: &str, families: &[Family]) {
@@ -15,7 +15,7 @@ pub fn measure(criterion: &mut Criterion, scene: &str, families: &[Family]) {
             for member in &family.members {
                 for way in Way::ALL {
                     if let Some(mut job) = member.tracer.job(kind.query, way, &kind.natural) {
-                        let name = format!("{} {} {}", family.primitives, member.layout, way.name());
+                        let name = format!("{} {} {}", family.primitives, member.name, way.name());
                         group.bench_function(name, |bencher| bencher.iter(|| job(None)));
                     }
                 }

@@ -7,21 +7,17 @@
 //! `-- shadow/interior`, applies to criterion alone: one that matches nothing leaves the table. `RAYON_NUM_THREADS` tells how
 //! many threads all are; of 1, columns are not repeated.
 
-mod check;
-mod family;
+mod families;
 mod groups;
-mod kinds;
-mod ours;
-mod peer;
 mod primitives;
-mod speed;
 mod table;
-mod tracer;
 
 #[path = "../shared/mod.rs"]
 mod shared;
 #[path = "../../tests/support/mod.rs"]
 mod support;
+#[path = "../shared/tracing/mod.rs"]
+mod tracing;
 
 /// Seen from outside, from inside, and without a surface: what lies between tells little more of a layout.
 const SCENES: [&str; 3] = ["closed-mesh", "interior", "clustered-soup"];
@@ -46,14 +42,17 @@ const TEST: Extent = Extent { size: 300, rays: 1100, naive_tests: 2_000_000, rep
 fn main() -> anyhow::Result<()> {
     let extent = if shared::extent::is_bench() { BENCH } else { TEST };
     let procedural = support::scenes::all(extent.size).into_iter();
-    let scenes = procedural.filter(|scene| SCENES.contains(&&*scene.name)).chain(shared::file::scene()?);
+    let scenes =
+        procedural.filter(|scene| SCENES.contains(&&*scene.name)).chain(shared::environment::scene()?);
 
     let mut criterion = shared::criterion::brief_criterion();
     let mut table = table::empty();
     for scene in scenes {
-        let families = family::all(&scene, extent.rays);
-        let checks: Vec<_> =
-            families.iter().map(|family| check::check(&scene.name, family, extent.naive_tests)).collect();
+        let families = families::all(&scene, extent.rays);
+        let checks: Vec<_> = families
+            .iter()
+            .map(|family| tracing::check::check(&scene.name, family, extent.naive_tests))
+            .collect();
         groups::measure(&mut criterion, &scene.name, &families);
         table::add(&mut table, &scene, &families, &checks, extent.repetitions);
     }

@@ -1,12 +1,12 @@
 //! The closing table: every contestant side by side.
 
-use crate::check::Check;
-use crate::family::{Family, Member};
-use crate::kinds::Kind;
 use crate::shared::columns::{self, decimal};
-use crate::speed::{Pass, measure};
 use crate::support::scenes::NamedScene;
-use crate::tracer::Way;
+use crate::tracing::check::Check;
+use crate::tracing::family::{Family, Member};
+use crate::tracing::kinds::Kind;
+use crate::tracing::speed::{Pass, measure};
+use crate::tracing::tracer::Way;
 use bvhkit::Counters;
 use comfy_table::Table;
 
@@ -74,7 +74,7 @@ pub fn add(
                 facts.next().unwrap_or_default(),
                 names.next().unwrap_or_default(),
                 family.primitives.into(),
-                member.layout.into(),
+                member.name.clone(),
             ];
             row.extend(speeds.map(|speed| decimal(speed, 2)));
             row.extend(counts(kind, member, check, *differ));

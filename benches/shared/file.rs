@@ -3,20 +3,15 @@
 use crate::support::scenes::NamedScene;
 use anyhow::{Context, Result};
 use bvhkit::Bvh;
-use std::path::PathBuf;
+use std::path::Path;
 
 #[path = "../../examples/path_tracer/scene/mod.rs"]
-#[expect(
-    dead_code,
-    unused_imports,
-    reason = "the path tracer needs more of a scene than its triangles; its unit tests are left out here"
-)]
+#[expect(dead_code, reason = "the path tracer needs more of a scene than its triangles")]
 mod scene;
 
-/// The scene in the file that the environment variable `BVHKIT_SCENE` names, if it is set.
-pub fn scene() -> Result<Option<NamedScene>> {
-    let Some(path) = std::env::var_os("BVHKIT_SCENE").map(PathBuf::from) else { return Ok(None) };
-    let mut scene = scene::load(&path)?;
+/// With the camera of the file, or one that sees everything.
+pub fn scene(path: &Path) -> Result<NamedScene> {
+    let mut scene = scene::load(path)?;
     let bvh = Bvh::build(scene.shapes.iter().copied())?;
     scene::view::complete(&mut scene, |ray| bvh.closest_hit(ray).map(|hit| (hit.t, hit.index)));
     let camera = scene.camera.context("a scene has a camera once it is complete")?;
@@ -24,10 +19,10 @@ pub fn scene() -> Result<Option<NamedScene>> {
     let center = glam::Vec3::from(bvh.aabb().center());
     let distance = camera.forward.dot(center - camera.position).max(1e-3 * center.distance(camera.position));
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    Ok(Some(NamedScene {
+    Ok(NamedScene {
         name,
         triangles: scene.triangles(),
         eye: camera.position,
         target: camera.position + distance * camera.forward,
-    }))
+    })
 }

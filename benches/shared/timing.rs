@@ -2,17 +2,27 @@
 
 use std::time::{Duration, Instant};
 
-/// The median duration of each candidate's `run`, by its position, without dropping its result; what comes of `prepare`
-/// just before is not timed.
+/// The median duration of each candidate's `run`; see [`turns`].
+pub fn interleaved<T>(
+    candidates: usize,
+    repetitions: usize,
+    prepare: impl FnMut(usize),
+    run: impl FnMut(usize) -> T,
+) -> Vec<Duration> {
+    turns(candidates, repetitions, prepare, run).into_iter().map(median).collect()
+}
+
+/// The durations of each candidate's `run`, by its position, without dropping its result; what comes of `prepare` just
+/// before is not timed.
 ///
 /// Candidates take turns, in an order reversed each time (A B C, C B A, ...), so that a machine that
 /// slows down meanwhile slows all of them down alike.
-pub fn interleaved<T>(
+pub fn turns<T>(
     candidates: usize,
     repetitions: usize,
     mut prepare: impl FnMut(usize),
     mut run: impl FnMut(usize) -> T,
-) -> Vec<Duration> {
+) -> Vec<Vec<Duration>> {
     let mut durations = vec![Vec::with_capacity(repetitions); candidates];
     for repetition in 0..repetitions {
         for turn in 0..candidates {
@@ -24,7 +34,7 @@ pub fn interleaved<T>(
             drop(result);
         }
     }
-    durations.into_iter().map(median).collect()
+    durations
 }
 
 fn median(mut durations: Vec<Duration>) -> Duration {

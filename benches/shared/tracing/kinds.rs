@@ -1,8 +1,8 @@
 //! Rays by kind, each with the question that renderers ask of it, in two orders.
 
+use super::tracer::Query;
 use crate::support::rays::{Rays, Surface, seen, sphere};
 use crate::support::scenes::NamedScene;
-use crate::tracer::Query;
 use bvhkit::{Aabb, Bvh, Ray};
 use glam::Vec3;
 use rand::seq::SliceRandom;

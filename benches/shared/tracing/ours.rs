@@ -1,7 +1,7 @@
 //! This crate's hierarchies.
 
+use super::tracer::{Job, Query, Tracer, Way, job, one_by_one};
 use crate::shared::agreement::{Hit, bare};
-use crate::tracer::{Job, Query, Tracer, Way, job, one_by_one};
 use bvhkit::{Bvh, Counters, Intersect, Ray, Traverse};
 
 impl<P, L> Tracer for Bvh<P, L>

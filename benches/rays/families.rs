@@ -1,54 +1,13 @@
-//! Who is measured: families of hierarchies over the same primitives, to which the same rays are put.
+//! The families that are measured, a family for each kind of primitive.
 
-use crate::kinds::{self, Kind};
 use crate::primitives::{discs, spheres};
-use crate::shared::agreement::{Answers, Disagreements, Hit, bare};
 use crate::shared::obvhs::{Peer, Traversal, convert};
 use crate::support::scenes::NamedScene;
-use crate::tracer::Tracer;
-use bvhkit::{
-    Bvh, CompactTree, Fast, Intersect, Precise, Ray, Traverse, Tree, Triangle, WideTree, reference,
-};
+use crate::tracing::family::{Family, Member};
+use crate::tracing::kinds::{self, Kind};
+use bvhkit::{Bvh, CompactTree, Fast, Intersect, Precise, Traverse, Tree, Triangle, WideTree};
 use obvhs::BvhBuildParams;
 use std::rc::Rc;
-
-pub struct Family {
-    pub primitives: &'static str,
-    pub kinds: Rc<[Kind]>,
-    pub naive: Box<dyn Naive>,
-    /// The first is ours.
-    pub members: Vec<Member>,
-}
-
-pub struct Member {
-    pub layout: &'static str,
-    /// Whose answers are promised to be the naive reference's; or a peer's.
-    pub ours: bool,
-    pub tracer: Box<dyn Tracer>,
-}
-
-/// The primitives without a tree.
-pub trait Naive {
-    fn count(&self) -> usize;
-    fn answers(&self, rays: &[Ray]) -> Answers;
-    fn all_hits(&self, ray: &Ray) -> Vec<Hit>;
-    fn disagreements(&self, rays: &[Ray], expected: &Answers, actual: &Answers) -> Disagreements;
-}
-
-impl<P: Intersect<Scalar = f32>> Naive for Vec<P> {
-    fn count(&self) -> usize {
-        self.len()
-    }
-    fn answers(&self, rays: &[Ray]) -> Answers {
-        Answers::naive(self, rays)
-    }
-    fn all_hits(&self, ray: &Ray) -> Vec<Hit> {
-        reference::hits(self, ray).into_iter().map(bare).collect()
-    }
-    fn disagreements(&self, rays: &[Ray], expected: &Answers, actual: &Answers) -> Disagreements {
-        Disagreements::count(self, rays, expected, actual)
-    }
-}
 
 /// Every layout over the triangles that are quickest to test, where layouts count for most; the default layout over
 /// everything else. More would be long in compiling and tell little.
@@ -101,7 +60,7 @@ where
 {
     let builder = Bvh::builder().layout::<L>();
     let bvh = builder.build(primitives.iter().copied()).expect("the coordinates are finite");
-    Member { layout, ours: true, tracer: Box::new(bvh) }
+    Member { name: layout.into(), ours: true, tracer: Box::new(bvh) }
 }
 
 /// By its middle preset.
@@ -111,5 +70,5 @@ fn peer<B: Traversal + Sync + 'static>(
     build: fn(BvhBuildParams, &[obvhs::triangle::Triangle]) -> Peer<B>,
 ) -> Member {
     let peer = build(BvhBuildParams::medium_build(), &convert(triangles));
-    Member { layout, ours: false, tracer: Box::new(peer) }
+    Member { name: layout.into(), ours: false, tracer: Box::new(peer) }
 }

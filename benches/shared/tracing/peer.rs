@@ -1,8 +1,8 @@
 //! `obvhs`, whose rays come one by one.
 
+use super::tracer::{Job, Query, Tracer, Way, job, one_by_one};
 use crate::shared::agreement::Hit;
 use crate::shared::obvhs::{Peer, Traversal};
-use crate::tracer::{Job, Query, Tracer, Way, job, one_by_one};
 use bvhkit::{Counters, Ray};
 
 impl<B: Traversal + Sync> Tracer for Peer<B> {

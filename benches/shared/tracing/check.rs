@@ -1,9 +1,9 @@
 //! Compares everyone's answers, before anyone's time is taken.
 
-use crate::family::{Family, Member};
-use crate::kinds::Kind;
+use super::family::{Family, Member};
+use super::kinds::Kind;
+use super::tracer::{Query, Way};
 use crate::shared::agreement::{Answers, Hit, assert_exact};
-use crate::tracer::{Query, Way};
 use bvhkit::Ray;
 
 /// What came of one kind of ray.
@@ -38,7 +38,7 @@ fn check_kind(scene: &str, family: &Family, kind: &Kind, naive_tests: usize) -> 
         Check { sample: sample.len(), differ: Vec::new(), hit: hits as f64 / natural.len() as f64 };
     for member in &family.members {
         let what = |way: Way| {
-            format!("{} {}, {} {} on {scene}", family.primitives, member.layout, way.name(), kind.name)
+            format!("{} {}, {} {} on {scene}", family.primitives, member.name, way.name(), kind.name)
         };
         if member.ours {
             for way in Way::ALL {

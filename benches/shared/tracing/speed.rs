@@ -1,9 +1,9 @@
 //! How fast all contestants are with one kind of ray.
 
-use crate::family::Family;
-use crate::kinds::Kind;
+use super::family::Family;
+use super::kinds::Kind;
+use super::tracer::{Job, Way};
 use crate::shared::timing::{interleaved, mega_rays};
-use crate::tracer::{Job, Way};
 use bvhkit::Ray;
 use std::sync::{Mutex, PoisonError};
 

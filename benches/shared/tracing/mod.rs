@@ -1,0 +1,9 @@
+//! What those share that put rays of every kind to hierarchies side by side.
+
+pub mod check;
+pub mod family;
+pub mod kinds;
+mod ours;
+mod peer;
+pub mod speed;
+pub mod tracer;
