@@ -13,6 +13,10 @@ impl Line {
 }
 
 /// Memory in which blocks of plain data lie: all of it initialised, with zeros at first.
+///
+/// In pages of any size: asking the system for pages of 2 MiB (`madvise`) for this and the build's buffers made a first
+/// build in a process quicker in five runs of eight (60 instead of 68 ms on sponza), slower in three, where such pages had
+/// to be made (85 to 99), and rays quicker by 1 %.
 #[derive(Clone, Default)]
 pub(super) struct Blocks {
     lines: Vec<Line>,
