@@ -141,7 +141,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> PartialEq for WideTree<S, N, F> {
         self.root == other.root
             && self.aabb == other.aabb
             && self.form == other.form
-            && self.blocks.as_bytes() == other.blocks.as_bytes()
+            && self.blocks.words() == other.blocks.words()
     }
 }
 
