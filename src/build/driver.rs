@@ -108,7 +108,7 @@ pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
     rules.heuristic.prepare(&mut references, &aabb);
     // Slots have 32 bits.
     let most = primitives.saturating_add(rules.heuristic.spare(primitives)).min(u32::MAX as usize);
-    references.resize(most.max(primitives), PrimRef::new(Aabb::EMPTY, u32::MAX));
+    references.resize(most, PrimRef::new(Aabb::EMPTY, u32::MAX));
     let build = Build { rules, watch, scene: aabb };
     let root = Set { memory: &mut references, len: primitives, aabb, depth: 0 };
     let (top, tasks) = build_top(OpenNode { set: root, parent: None }, &build);

@@ -99,8 +99,14 @@ impl<S: Scalar> Kernel for Bounds<'_, S> {
             let [low, high] = reference.corners::<I>(isa);
             (min, max) = (low.min(min), high.max(max));
         }
-        Aabb { min: [min.lane(0), min.lane(1), min.lane(2)], max: [max.lane(0), max.lane(1), max.lane(2)] }
+        Aabb { min: three(min), max: three(max) }
     }
+}
+
+/// The first three lanes.
+#[inline(always)]
+pub(super) fn three<S: Scalar>(lanes: impl Lanes<S>) -> [S; 3] {
+    [lanes.lane(0), lanes.lane(1), lanes.lane(2)]
 }
 
 #[cfg(test)]

@@ -137,6 +137,16 @@ impl<S: Scalar> Aabb<S> {
         x * y + y * z + z * x
     }
 
+    /// By axis, how many of `count` equal slices lie in a unit of length; 0 where there is no extent.
+    #[inline(always)]
+    pub(crate) fn per_unit(&self, count: usize) -> [S; 3] {
+        let count = S::from_count(count as i32);
+        let [x, y, z] = self.extent();
+        let (x, y, z) = (count / x, count / y, count / z);
+        let finite = |scale: S| if scale.is_finite() { scale } else { S::ZERO };
+        [finite(x), finite(y), finite(z)]
+    }
+
     /// 1 / (the largest extent), for [`scaled_half_area`](Self::scaled_half_area); 1 for a point.
     #[inline]
     pub(crate) fn area_scale(&self) -> S {

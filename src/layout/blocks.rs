@@ -53,9 +53,13 @@ impl Blocks {
         self.words.capacity() * size_of::<u64>()
     }
 
-    /// All words, to be compared.
+    /// All lines' words, to be compared.
     pub fn words(&self) -> &[u64] {
-        &self.words[self.first..self.first + self.lines * WORDS]
+        &self.words[self.first..][..self.lines * WORDS]
+    }
+
+    fn words_mut(&mut self) -> &mut [u64] {
+        &mut self.words[self.first..][..self.lines * WORDS]
     }
 
     #[inline(always)]
@@ -66,9 +70,8 @@ impl Blocks {
     /// The memory in parts that are written independently. `ranges` are of bytes, ascend, do not overlap, and begin with
     /// a line.
     pub fn parts(&mut self, ranges: impl Iterator<Item = Range<usize>>) -> Vec<Part<'_>> {
-        let words = &mut self.words[self.first..self.first + self.lines * WORDS];
         // SAFETY: words are lines: as many bytes, any of which are some, and the first is where a line may begin (`zeroed`).
-        let (before, lines, behind) = unsafe { words.align_to_mut::<Line>() };
+        let (before, lines, behind) = unsafe { self.words_mut().align_to_mut::<Line>() };
         debug_assert!(before.is_empty() && behind.is_empty());
         let (mut rest, mut done) = (lines, 0);
         let part = |range: Range<usize>| {
@@ -112,8 +115,7 @@ impl Blocks {
 impl Clone for Blocks {
     fn clone(&self) -> Self {
         let mut clone = Self::zeroed(self.lines * Line::BYTES);
-        let first = clone.first;
-        clone.words[first..first + self.lines * WORDS].copy_from_slice(self.words());
+        clone.words_mut().copy_from_slice(self.words());
         clone
     }
 }

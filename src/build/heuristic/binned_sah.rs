@@ -48,14 +48,9 @@ impl<S: Scalar> Heuristic<S> for BinnedSah {
         if SahCost::is_block(node) {
             return Split::Leaf;
         }
-        let Some(best) = self.plane(node) else { return Split::Leaf };
-        let area = node.aabb.scaled_half_area(node.aabb.area_scale()).to_f64();
-        let may_be_leaf = node.references.len() <= node.max_leaf_size;
-        if may_be_leaf && self.cost.prefers_leaf(node, area, best.weighted_area.to_f64()) {
-            Split::Leaf
-        } else {
-            best.split
-        }
+        self.plane(node).map_or(Split::Leaf, |best| {
+            self.cost.split_or_leaf(node, best.split, best.weighted_area.to_f64())
+        })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Counting references into bins, and the cheapest plane between two bins.
 
 use super::Split;
-use crate::build::reference::PrimRef;
+use crate::build::reference::{PrimRef, three};
 use crate::geometry::{Aabb, Axis, Scalar};
 use crate::simd::{Halves, Kernel, Lanes};
 use fearless_simd::Simd;
@@ -42,8 +42,7 @@ impl<S: Scalar, const N: usize> Kernel for Bins<'_, S, N> {
     #[inline(always)]
     fn run<I: Simd>(self, isa: I) -> Option<Plane<S>> {
         const { assert!(N.is_multiple_of(LANES)) }
-        let [x, y, z] = self.span.extent();
-        let scale = [self.bins_per_unit(x), self.bins_per_unit(y), self.bins_per_unit(z)];
+        let scale = self.span.per_unit(self.count);
         let filled = self.fill(isa, scale);
         let costs = [self.costs(isa, &filled, 0), self.costs(isa, &filled, 1), self.costs(isa, &filled, 2)];
         let (axis, bin, weighted_area) = least(isa, &costs)?;
@@ -54,13 +53,6 @@ impl<S: Scalar, const N: usize> Kernel for Bins<'_, S, N> {
 }
 
 impl<S: Scalar, const N: usize> Bins<'_, S, N> {
-    /// 0 on an axis without extent.
-    #[inline(always)]
-    fn bins_per_unit(&self, extent: S) -> S {
-        let scale = S::from_count(self.count as i32) / extent;
-        if scale.is_finite() { scale } else { S::ZERO }
-    }
-
     #[inline(always)]
     fn fill<I: Simd>(&self, isa: I, scale: [S; 3]) -> Filled<S, I, N> {
         let grid = Grid::new(isa, self.span.min, scale, self.count);
@@ -135,8 +127,7 @@ impl<S: Scalar, I: Simd, const N: usize> Filled<S, I, N> {
             *side = side.max(self.boxes[axis][bin]);
         }
         let [negated_min, max] = left.min(right).to_halves();
-        let min = S::Times4::splat(isa, S::ZERO) - negated_min;
-        Aabb { min: [min.lane(0), min.lane(1), min.lane(2)], max: [max.lane(0), max.lane(1), max.lane(2)] }
+        Aabb { min: three(S::Times4::splat(isa, S::ZERO) - negated_min), max: three(max) }
     }
 
     #[inline(always)]
@@ -155,14 +146,9 @@ impl<S: Scalar, I: Simd, const N: usize> Filled<S, I, N> {
         // As `Aabb::center` rounds; and in this order a NaN, as in the fourth lane, becomes zero.
         let bins = ((min * half + max * half - origin) * scale).max(zero).min(last);
         let aabb = S::Times8::of_halves([zero - min, max]);
+        let [x, y, z] = three(bins);
         // SAFETY: from 0 to the last bin.
-        let [x, y, z] = unsafe {
-            [
-                bins.lane(0).to_small_integer(),
-                bins.lane(1).to_small_integer(),
-                bins.lane(2).to_small_integer(),
-            ]
-        };
+        let [x, y, z] = unsafe { [x.to_small_integer(), y.to_small_integer(), z.to_small_integer()] };
         self.add(0, x as usize % N, aabb, 1);
         self.add(1, y as usize % N, aabb, 1);
         self.add(2, z as usize % N, aabb, 1);
@@ -212,39 +198,39 @@ impl<S: Scalar, const N: usize> Side<S, N> {
     #[inline(always)]
     fn put<I: Simd>(&mut self, bin: usize, aabb: S::Times8<I>, count: i32) {
         let [negated_min, max] = aabb.to_halves();
-        let extent = max + negated_min;
-        self.extents[0][bin] = extent.lane(0);
-        self.extents[1][bin] = extent.lane(1);
-        self.extents[2][bin] = extent.lane(2);
+        let [x, y, z] = three(max + negated_min);
+        self.extents[0][bin] = x;
+        self.extents[1][bin] = y;
+        self.extents[2][bin] = z;
         self.counts[bin] = S::from_count(count);
     }
 
     /// Of eight bins. Of nothing at all it is NaN, infinity times zero.
     #[inline(always)]
     fn costs<I: Simd>(&self, isa: I, first: usize, scale: S::Times8<I>) -> S::Times8<I> {
-        let eight = |row: &[S; N]| {
-            let row = &row[first..first + LANES];
-            // SAFETY: eight scalars.
-            unsafe { S::Times8::load(isa, row.as_ptr()) }
-        };
         let [x, y, z] = &self.extents;
-        let (x, y, z) = (eight(x) * scale, eight(y) * scale, eight(z) * scale);
-        (x * y + y * z + z * x) * eight(&self.counts)
+        let x = eight(isa, x, first) * scale;
+        let y = eight(isa, y, first) * scale;
+        let z = eight(isa, z, first) * scale;
+        (x * y + y * z + z * x) * eight(isa, &self.counts, first)
     }
+}
+
+/// A part of a row.
+#[inline(always)]
+fn eight<S: Scalar, I: Simd, const N: usize>(isa: I, row: &[S; N], first: usize) -> S::Times8<I> {
+    let row = &row[first..first + LANES];
+    // SAFETY: eight scalars.
+    unsafe { S::Times8::load(isa, row.as_ptr()) }
 }
 
 /// Where the least number is, the first of equals, and the number; none if there is none.
 #[inline(always)]
 fn least<S: Scalar, I: Simd, const N: usize>(isa: I, costs: &[[S; N]; 3]) -> Option<(usize, usize, S)> {
-    let eight = |axis: usize, first: usize| {
-        let row = &costs[axis][first..first + LANES];
-        // SAFETY: eight scalars.
-        unsafe { S::Times8::load(isa, row.as_ptr()) }
-    };
     let mut smallest = S::Times8::splat(isa, S::INFINITY);
-    for axis in 0..3 {
+    for row in costs {
         for first in (0..N).step_by(LANES) {
-            smallest = eight(axis, first).min(smallest);
+            smallest = eight(isa, row, first).min(smallest);
         }
     }
     let smallest =
@@ -253,9 +239,9 @@ fn least<S: Scalar, I: Simd, const N: usize>(isa: I, costs: &[[S; N]; 3]) -> Opt
     if smallest == S::INFINITY {
         return None;
     }
-    for axis in 0..3 {
+    for (axis, row) in costs.iter().enumerate() {
         for first in (0..N).step_by(LANES) {
-            let is_least = S::Times8::<I>::bits(eight(axis, first).le(S::Times8::splat(isa, smallest)));
+            let is_least = S::Times8::<I>::bits(eight(isa, row, first).le(S::Times8::splat(isa, smallest)));
             if is_least != 0 {
                 return Some((axis, first + is_least.trailing_zeros() as usize, smallest));
             }

@@ -52,12 +52,7 @@ struct Grid<S> {
 
 impl<S: Scalar> Grid<S> {
     fn new(scene: &Aabb<S>) -> Self {
-        let cells = S::from_count(1 << BITS);
-        let scale = scene.extent().map(|extent| {
-            let scale = cells / extent;
-            if scale.is_finite() { scale } else { S::ZERO }
-        });
-        Self { origin: scene.min, scale }
+        Self { origin: scene.min, scale: scene.per_unit(1 << BITS) }
     }
 
     /// The bits of the cell's three coordinates in turns.

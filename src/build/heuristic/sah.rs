@@ -1,6 +1,6 @@
 //! The surface area heuristic's costs.
 
-use super::BuildNode;
+use super::{BuildNode, Split};
 use crate::geometry::Scalar;
 
 /// The costs that the surface area heuristic weighs against each other.
@@ -32,17 +32,22 @@ impl Default for SahCost {
 }
 
 impl SahCost {
-    /// Whether a leaf costs no more than the best split, whose sides' areas times numbers of primitives sum to
-    /// `weighted_area`.
-    pub(super) fn prefers_leaf<S: Scalar>(
+    /// The best split, whose sides' areas times numbers of primitives sum to `weighted_area`, all areas scaled by the node's
+    /// own `area_scale`; or a leaf, where there may be one and it costs no more.
+    pub(super) fn split_or_leaf<S: Scalar>(
         &self,
         node: &BuildNode<'_, S>,
-        area: f64,
+        split: Split<S>,
         weighted_area: f64,
-    ) -> bool {
-        let tests = node.references.len().div_ceil(node.block_size) as f64;
-        let split = self.traversal * area + self.intersection * weighted_area / node.block_size as f64;
-        self.intersection * tests * area <= split
+    ) -> Split<S> {
+        let n = node.references.len();
+        if n > node.max_leaf_size {
+            return split;
+        }
+        let area = node.aabb.scaled_half_area(node.aabb.area_scale()).to_f64();
+        let leaf_cost = self.intersection * n.div_ceil(node.block_size) as f64 * area;
+        let tests = self.intersection * weighted_area / node.block_size as f64;
+        if leaf_cost <= self.traversal * area + tests { Split::Leaf } else { split }
     }
 
     /// Whether one block holds all, which no split makes cheaper.

@@ -54,13 +54,7 @@ impl<S: Scalar> Heuristic<S> for SpatialSah {
                 }
             }
         }
-        let area = node.aabb.scaled_half_area(scale).to_f64();
-        let may_be_leaf = node.references.len() <= node.max_leaf_size;
-        if may_be_leaf && self.planes.cost.prefers_leaf(node, area, weighted_area.to_f64()) {
-            Split::Leaf
-        } else {
-            split
-        }
+        self.planes.cost.split_or_leaf(node, split, weighted_area.to_f64())
     }
 
     fn spare(&self, primitives: usize) -> usize {

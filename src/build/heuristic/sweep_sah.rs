@@ -60,12 +60,7 @@ impl<S: Scalar> Heuristic<S> for SweepSah {
                 (axis, best) = (next, sweep);
             }
         }
-        let area = node.aabb.scaled_half_area(scale).to_f64();
-        if n <= node.max_leaf_size && self.cost.prefers_leaf(node, area, best.weighted_area) {
-            Split::Leaf
-        } else {
-            Split::Count { axis, left: best.left }
-        }
+        self.cost.split_or_leaf(node, Split::Count { axis, left: best.left }, best.weighted_area)
     }
 }
 
