@@ -3,6 +3,7 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
+use core::mem::MaybeUninit;
 
 /// The thread pool that was asked for could not be started.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,6 +51,29 @@ pub(crate) fn collect<T: Sync, R: Send>(items: &[T], f: impl Fn(usize, &T) -> R 
 #[cfg(not(feature = "rayon"))]
 pub(crate) fn collect<T, R>(items: &[T], f: impl Fn(usize, &T) -> R) -> Vec<R> {
     items.iter().enumerate().map(|(index, item)| f(index, item)).collect()
+}
+
+/// The items of all parts, one after another.
+///
+/// # Panics
+/// If a part has fewer items than it says.
+pub(crate) fn concat<T: Send, I: ExactSizeIterator<Item = T> + Send>(parts: Vec<I>) -> Vec<T> {
+    let len = parts.iter().map(ExactSizeIterator::len).sum();
+    let mut all = Vec::with_capacity(len);
+    let mut rest: &mut [MaybeUninit<T>] = &mut all.spare_capacity_mut()[..len];
+    let places = parts.into_iter().map(|items| {
+        let (places, behind) = core::mem::take(&mut rest).split_at_mut(items.len());
+        rest = behind;
+        (places, items)
+    });
+    map(places.collect(), |(places, mut items)| {
+        for place in places {
+            place.write(items.next().expect("a part has as many items as it says"));
+        }
+    });
+    // SAFETY: the parts' places are all `len`, and each was written, or `map` would have panicked.
+    unsafe { all.set_len(len) }
+    all
 }
 
 /// Items for which no other thread is woken.

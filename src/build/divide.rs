@@ -59,7 +59,6 @@ impl<'r, S: Scalar> Set<'r, S> {
         let middle = match proposal {
             Split::Leaf if n <= rules.max_leaf_size => return Err(self),
             Split::Plane { axis, position } => partition(references, axis, position),
-            Split::InOrder { left } => left.min(n),
             Split::Count { axis, left } if left > 0 && left < n => select(references, axis, left),
             Split::Spatial { axis, position } => {
                 let cut = Cut::new(references, axis, position);

@@ -11,8 +11,11 @@ mod cut;
 mod divide;
 mod driver;
 pub mod heuristic;
+mod linear;
 mod optimise;
+mod radix;
 mod reference;
+mod subtree;
 mod watch;
 
 pub(crate) use divide::Rules;

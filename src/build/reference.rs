@@ -82,13 +82,13 @@ pub(super) fn centroids<S: Scalar>(references: &[PrimRef<S>]) -> Aabb<S> {
 }
 
 /// The box around references; [`Aabb::EMPTY`] around none.
-pub(super) fn bounds<S: Scalar>(references: &[PrimRef<S>]) -> Aabb<S> {
+pub(super) fn bounds<'r, S: Scalar>(references: impl IntoIterator<Item = &'r PrimRef<S>>) -> Aabb<S> {
     Backend::best().run(Bounds(references))
 }
 
-struct Bounds<'r, S>(&'r [PrimRef<S>]);
+struct Bounds<R>(R);
 
-impl<S: Scalar> Kernel for Bounds<'_, S> {
+impl<'r, S: Scalar, R: IntoIterator<Item = &'r PrimRef<S>>> Kernel for Bounds<R> {
     const IS_WIDE: bool = true;
     type Output = Aabb<S>;
 

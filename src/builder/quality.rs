@@ -36,10 +36,8 @@ impl Quality {
 }
 
 impl<S: Scalar> Heuristic<S> for Quality {
-    fn prepare(&self, references: &mut Vec<PrimRef<S>>, scene: &Aabb<S>) {
-        if *self == Self::Fast {
-            Morton.prepare(references, scene);
-        }
+    fn codes(&self, references: &[PrimRef<S>], scene: &Aabb<S>) -> Option<Vec<u64>> {
+        if *self == Self::Fast { Morton.codes(references, scene) } else { None }
     }
 
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {

@@ -36,6 +36,9 @@ impl Blocks {
     /// Blocks begin at multiples of this many bytes.
     pub const UNIT: usize = 8;
 
+    /// No block has to begin at multiples of more.
+    pub const ALIGN: usize = Line::BYTES;
+
     /// Room for so many bytes.
     pub fn zeroed(bytes: usize) -> Self {
         let lines = bytes.div_ceil(Line::BYTES);
@@ -78,7 +81,7 @@ impl Blocks {
             let [start, end] = [range.start / Line::BYTES, range.end.div_ceil(Line::BYTES)];
             let (lines, behind) = core::mem::take(&mut rest)[start - done..].split_at_mut(end - start);
             (rest, done) = (behind, end);
-            Part { start: range.start, lines }
+            Part { lines }
         };
         ranges.map(part).collect()
     }
@@ -122,13 +125,11 @@ impl Clone for Blocks {
 
 /// A part of the memory, to be written.
 pub(super) struct Part<'m> {
-    /// Its first byte's offset.
-    start: usize,
     lines: &'m mut [Line],
 }
 
 impl Part<'_> {
-    /// What lies at an offset, one after another.
+    /// What lies at an offset from the part's begin, one after another.
     ///
     /// # Safety
     /// Any bytes are a `T`, and a `T` is any bytes.
@@ -136,12 +137,11 @@ impl Part<'_> {
     /// # Panics
     /// If they are not inside of the part, or not aligned.
     pub unsafe fn get_mut<T>(&mut self, offset: usize, len: usize) -> &mut [T] {
-        let place = offset - self.start;
-        assert!(place + len * size_of::<T>() <= self.lines.len() * Line::BYTES);
-        assert!(align_of::<T>() <= Line::BYTES && place.is_multiple_of(align_of::<T>()));
+        assert!(offset + len * size_of::<T>() <= self.lines.len() * Line::BYTES);
+        assert!(align_of::<T>() <= Line::BYTES && offset.is_multiple_of(align_of::<T>()));
         // SAFETY: inside and aligned, as was just asked; the bytes are a T by the caller's word.
         unsafe {
-            core::slice::from_raw_parts_mut(self.lines.as_mut_ptr().cast::<u8>().add(place).cast(), len)
+            core::slice::from_raw_parts_mut(self.lines.as_mut_ptr().cast::<u8>().add(offset).cast(), len)
         }
     }
 }

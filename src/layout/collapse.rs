@@ -23,31 +23,38 @@ pub(crate) trait Contents<S>: Sync {
     fn prefetch(&self, index: u32);
 }
 
-/// Bytes that are filled at a time: small enough to keep threads evenly busy.
-const PART: usize = 1 << 18;
+/// Subtrees of so many primitives and fewer are sections of their own: small enough to keep threads evenly busy.
+const SECTION: u32 = 1 << 12;
 
 /// How many blocks ahead primitives are asked for.
 const AHEAD: usize = 4;
 
-/// A place in memory and what belongs there.
+/// A place in memory, from the begin of its section on, and what belongs there.
 struct Block {
     offset: usize,
     what: What,
 }
 
 enum What {
-    /// A node with these of the outline's children.
+    /// A node with these of the section's children.
     Node(Range<usize>),
     /// A leaf with the primitives of these slots.
     Leaf(Range<usize>),
 }
 
-/// Where all blocks lie, in the order of the memory, and how many bytes that takes.
-struct Arrangement<S> {
-    blocks: Vec<Block>,
+/// The top of the tree, or a subtree: where its blocks lie, in the order of the memory.
+struct Section<S> {
+    /// Where it begins, and how many bytes it takes.
+    start: usize,
     bytes: usize,
-    /// Of all nodes, one after another.
+    blocks: Vec<Block>,
+    /// Of all nodes, one after another. References are from the section's begin on.
     children: Vec<(Aabb<S>, Reference)>,
+}
+
+/// Where all blocks lie.
+struct Arrangement<S> {
+    sections: Vec<Section<S>>,
     root: Option<Reference>,
 }
 
@@ -55,7 +62,7 @@ struct Arrangement<S> {
 struct Open<S> {
     child: Child,
     aabb: Aabb<S>,
-    /// Which of all children it is; none for the root.
+    /// Which of its section's children it is; none for the first.
     place: Option<usize>,
     depth: usize,
     /// How many children of the nodes above it may be waiting when it is visited.
@@ -86,11 +93,11 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
             Err(Failure::TooDeep) => Self::arrange(&plan, by_levels, contents),
             other => other,
         };
-        let arrangement = arrangement.ok()?;
+        let Arrangement { sections, root } = arrangement.ok()?;
         let coordinates = [tree.aabb.min, tree.aabb.max];
         Some(Self {
-            blocks: Self::fill(&arrangement, &tree, contents),
-            root: arrangement.root,
+            blocks: Self::fill(sections, &tree, contents),
+            root,
             aabb: tree.aabb,
             len: tree.len(),
             references: tree.indices.len(),
@@ -99,20 +106,107 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         })
     }
 
-    /// Decides where every block lies: a node, its leaves, then its inner children depth first.
+    /// Decides where every block lies: first the top, then the subtrees that are sections of their own.
     fn arrange(
+        plan: &Plan<'_, S, N>,
+        roots_of: impl Fn(usize, &mut Vec<(Child, Aabb<S>)>) + Sync,
+        contents: &impl Contents<S>,
+    ) -> Result<Arrangement<S>, Failure> {
+        let mut top = Section::new();
+        let Some(child) = plan.tree.root() else {
+            return Ok(Arrangement { sections: Vec::new(), root: None });
+        };
+        if plan.is_leaf(child, &plan.tree.aabb) {
+            let root = top.leaf::<F, N>(plan.slots(child), contents.operands())?;
+            return Ok(Arrangement { sections: alloc::vec![top], root: Some(root) });
+        }
+        let root = Open { child, aabb: plan.tree.aabb, place: None, depth: 0, pending: 0 };
+        let mut subtrees = Vec::new();
+        let is_small = |open: &Open<S>| !open.child.is_leaf() && plan.slots(open.child).0 <= SECTION;
+        if is_small(&root) {
+            subtrees.push(root);
+        } else {
+            top.grow::<F, N>(root, plan, &roots_of, contents, |open| {
+                let (small, large) = if is_small(&open) { (Some(open), None) } else { (None, Some(open)) };
+                subtrees.extend(small);
+                large
+            })?;
+        }
+        let places: Vec<_> = subtrees.iter().map(|subtree| subtree.place).collect();
+        let arranged = parallel::map(subtrees, |subtree| {
+            let mut section = Section::new();
+            let root = Open { place: None, ..subtree };
+            section.grow::<F, N>(root, plan, &roots_of, contents, Some).map(|()| section)
+        });
+        let (mut sections, mut end, mut root) =
+            (Vec::with_capacity(1 + places.len()), top.bytes, Reference::node(0));
+        for (section, place) in arranged.into_iter().zip(places) {
+            let start = end.next_multiple_of(Blocks::ALIGN);
+            let section = Section { start, ..section? };
+            end = start + section.bytes;
+            // A section begins with its first node.
+            *place.map_or(&mut root, |place| &mut top.children[place].1) = Reference::node(start);
+            sections.push(section);
+        }
+        if end > Reference::LIMIT {
+            return Err(Failure::TooLarge);
+        }
+        sections.insert(0, top);
+        Ok(Arrangement { sections, root: Some(root) })
+    }
+
+    /// Writes every block.
+    fn fill(sections: Vec<Section<S>>, tree: &Tree<S>, contents: &impl Contents<S>) -> Blocks {
+        let range = |section: &Section<S>| section.start..section.start + section.bytes;
+        let mut memory = Blocks::zeroed(sections.last().map_or(0, |last| range(last).end));
+        let parts = memory.parts(sections.iter().map(range));
+        parallel::map(
+            parts.into_iter().zip(sections).collect(),
+            |(mut part, section): (Part<'_>, Section<S>)| {
+                let Section { start, blocks, mut children, .. } = section;
+                for (_, child) in children.iter_mut().filter(|(_, child)| F::COPIES || !child.is_leaf()) {
+                    *child = child.behind(start);
+                }
+                let mut values = alloc::vec![S::ZERO; contents.operands()];
+                for (number, block) in blocks.iter().enumerate() {
+                    // Primitives lie in the input's order: waiting for them took half of the time.
+                    if let Some(Block { what: What::Leaf(slots), .. }) = blocks.get(number + AHEAD) {
+                        tree.indices[slots.clone()].iter().for_each(|&index| contents.prefetch(index));
+                    }
+                    match &block.what {
+                        What::Node(range) => {
+                            let node = F::Node::new(&children[range.clone()]);
+                            // SAFETY: nodes are plain data.
+                            unsafe { part.get_mut(block.offset, 1)[0] = node }
+                        }
+                        What::Leaf(slots) => {
+                            let indices = &tree.indices[slots.clone()];
+                            put_leaf(&mut part, block.offset, indices, contents, &mut values);
+                        }
+                    }
+                }
+            },
+        );
+        memory
+    }
+}
+
+impl<S: Scalar> Section<S> {
+    fn new() -> Self {
+        Self { start: 0, bytes: 0, blocks: Vec::new(), children: Vec::new() }
+    }
+
+    /// Decides where the blocks below a node lie: the node, its leaves, then its inner children depth first, but for
+    /// those of which `takes` leaves nothing.
+    fn grow<F: Form<S, N>, const N: usize>(
+        &mut self,
+        root: Open<S>,
         plan: &Plan<'_, S, N>,
         roots_of: impl Fn(usize, &mut Vec<(Child, Aabb<S>)>),
         contents: &impl Contents<S>,
-    ) -> Result<Arrangement<S>, Failure> {
-        let tree = plan.tree;
-        let mut all = Arrangement { blocks: Vec::new(), bytes: 0, children: Vec::new(), root: None };
-        let Some(root) = tree.root() else { return Ok(all) };
-        if plan.is_leaf(root, &tree.aabb) {
-            all.root = Some(all.leaf::<F, N>(plan.slots(root), contents.operands())?);
-            return Ok(all);
-        }
-        let mut open = alloc::vec![Open { child: root, aabb: tree.aabb, place: None, depth: 0, pending: 0 }];
+        mut takes: impl FnMut(Open<S>) -> Option<Open<S>>,
+    ) -> Result<(), Failure> {
+        let mut open = alloc::vec![root];
         let mut roots = Vec::with_capacity(N);
         while let Some(Open { child, aabb, place, depth, pending }) = open.pop() {
             if depth > MAX_DEPTH || pending > MAX_PENDING {
@@ -120,76 +214,35 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
             }
             roots.clear();
             if child.is_leaf() {
-                parts((child, aabb), contents, &tree.indices, N, &mut roots);
+                parts((child, aabb), contents, &plan.tree.indices, N, &mut roots);
             } else {
                 roots_of(child.first as usize, &mut roots);
             }
             // The child to begin with in the highest lane: from there it is taken first if any hit will do.
             roots.sort_by_cached_key(|(_, aabb)| plan.area(aabb).to_ordered_bits());
-            let first = all.children.len();
+            let first = self.children.len();
             let offset =
-                all.allocate(What::Node(first..first + roots.len()), size_of::<F::Node>(), F::Node::ALIGN);
+                self.allocate(What::Node(first..first + roots.len()), size_of::<F::Node>(), F::Node::ALIGN);
+            if let Some(place) = place {
+                self.children[place].1 = Reference::node(offset);
+            }
             for &(child, aabb) in &roots {
                 let reference = if plan.is_leaf(child, &aabb) {
-                    all.leaf::<F, N>(plan.slots(child), contents.operands())?
+                    self.leaf::<F, N>(plan.slots(child), contents.operands())?
                 } else {
-                    let (place, pending) = (Some(all.children.len()), pending + roots.len() - 1);
-                    open.push(Open { child, aabb, place, depth: depth + 1, pending });
+                    let (place, pending) = (Some(self.children.len()), pending + roots.len() - 1);
+                    open.extend(takes(Open { child, aabb, place, depth: depth + 1, pending }));
                     Reference::NONE
                 };
-                all.children.push((aabb, reference));
+                self.children.push((aabb, reference));
             }
-            match place {
-                Some(place) => all.children[place].1 = Reference::node(offset),
-                None => all.root = Some(Reference::node(offset)),
-            }
-            if all.bytes > Reference::LIMIT {
+            if self.bytes > Reference::LIMIT {
                 return Err(Failure::TooLarge);
             }
         }
-        Ok(all)
+        Ok(())
     }
 
-    /// Writes every block.
-    fn fill(all: &Arrangement<S>, tree: &Tree<S>, contents: &impl Contents<S>) -> Blocks {
-        let mut memory = Blocks::zeroed(all.bytes);
-        // Parts of whole lines.
-        let (mut groups, mut ranges, mut rest) = (Vec::new(), Vec::new(), all.blocks.as_slice());
-        while let Some(first) = rest.first() {
-            let is_part =
-                |block: &Block| block.offset >= first.offset + PART && block.offset.is_multiple_of(64);
-            let len = rest.iter().position(is_part).unwrap_or(rest.len());
-            let (group, behind) = rest.split_at(len);
-            ranges.push(first.offset..behind.first().map_or(all.bytes, |block| block.offset));
-            groups.push(group);
-            rest = behind;
-        }
-        let parts = memory.parts(ranges.into_iter());
-        parallel::map(parts.into_iter().zip(groups).collect(), |(mut part, blocks): (Part<'_>, &[Block])| {
-            let mut values = alloc::vec![S::ZERO; contents.operands()];
-            for (number, block) in blocks.iter().enumerate() {
-                // Primitives lie in the input's order: waiting for them took half of the time.
-                if let Some(Block { what: What::Leaf(slots), .. }) = blocks.get(number + AHEAD) {
-                    tree.indices[slots.clone()].iter().for_each(|&index| contents.prefetch(index));
-                }
-                match &block.what {
-                    What::Node(children) => {
-                        let node = F::Node::new(&all.children[children.clone()]);
-                        // SAFETY: nodes are plain data.
-                        unsafe { part.get_mut(block.offset, 1)[0] = node }
-                    }
-                    What::Leaf(slots) => {
-                        let indices = &tree.indices[slots.clone()];
-                        put_leaf(&mut part, block.offset, indices, contents, &mut values);
-                    }
-                }
-            }
-        });
-        memory
-    }
-}
-
-impl<S: Scalar> Arrangement<S> {
     /// A new block behind all others.
     fn allocate(&mut self, what: What, bytes: usize, align: usize) -> usize {
         let offset = self.bytes.next_multiple_of(align);
@@ -208,7 +261,7 @@ impl<S: Scalar> Arrangement<S> {
         }
         let slots = first as usize..first as usize + count as usize;
         let bytes = operands * size_of::<[S; LEAF_WIDTH]>() + size_of::<[u32; LEAF_WIDTH]>();
-        let align = if operands > 0 { size_of::<[S; LEAF_WIDTH]>().min(64) } else { 32 };
+        let align = if operands > 0 { size_of::<[S; LEAF_WIDTH]>().min(Blocks::ALIGN) } else { 32 };
         Ok(Reference::leaf(self.allocate(What::Leaf(slots), bytes, align)))
     }
 }

@@ -121,7 +121,7 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
         let (left, right) = (weight(0), weight(1));
         let slots = (left.slots.0 + right.slots.0, left.slots.1.min(right.slots.1));
         let roots = (left.roots + right.roots).min(N);
-        let area = self.area(&node.aabb(0).union(node.aabb(1)));
+        let area = self.area(&node.union());
         let mut forest = [f32::INFINITY; N];
         for (j, cost) in left.forest[..left.roots].iter().enumerate() {
             for (total, other) in forest[1..].iter_mut().skip(j).zip(&right.forest[..right.roots]) {

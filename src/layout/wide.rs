@@ -49,6 +49,11 @@ impl Reference {
         Self((offset / Blocks::UNIT) as u32 | Self::LEAF)
     }
 
+    /// The same so many bytes further on.
+    pub(super) fn behind(self, bytes: usize) -> Self {
+        Self(self.0 + (bytes / Blocks::UNIT) as u32)
+    }
+
     #[inline(always)]
     pub fn is_leaf(self) -> bool {
         self.0 & Self::LEAF != 0

@@ -62,6 +62,11 @@ impl<S: Scalar> Node<S> {
         Aabb { min: self.planes.map(|axis| axis[0][side]), max: self.planes.map(|axis| axis[1][side]) }
     }
 
+    /// The box around both children.
+    pub fn union(&self) -> Aabb<S> {
+        self.aabb(0).union(self.aabb(1))
+    }
+
     pub fn new(boxes: [Aabb<S>; 2]) -> Self {
         let [left, right] = boxes;
         let pair = |axis: usize| [[left.min[axis], right.min[axis]], [left.max[axis], right.max[axis]]];

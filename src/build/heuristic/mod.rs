@@ -68,9 +68,13 @@ pub trait Heuristic<S: Scalar>: Sync {
     /// Proposes how to split `node`, which has at least two references.
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S>;
 
-    /// Called once before all splits: a heuristic may bring the references into an order, which
-    /// [`Split::InOrder`] keeps.
-    fn prepare(&self, _references: &mut Vec<PrimRef<S>>, _scene: &Aabb<S>) {}
+    /// Instead of splits: a code for each reference, its place along a curve through `scene`, the box around
+    /// everything. References are sorted by their codes, equal ones as in the input, and each node is split where
+    /// the highest bit changes, in one pass from the leaves up (Lauterbach et al. 2009; Apetrei 2014). As many codes as
+    /// references, or they do not count. See [`Morton`].
+    fn codes(&self, _references: &[PrimRef<S>], _scene: &Aabb<S>) -> Option<Vec<u64>> {
+        None
+    }
 
     /// How many more references than primitives there may be, by [`Split::Spatial`]: memory for them is asked for at once.
     fn spare(&self, _primitives: usize) -> usize {
@@ -83,8 +87,8 @@ impl<S: Scalar, H: Heuristic<S> + ?Sized> Heuristic<S> for &H {
         (**self).split(node)
     }
 
-    fn prepare(&self, references: &mut Vec<PrimRef<S>>, scene: &Aabb<S>) {
-        (**self).prepare(references, scene);
+    fn codes(&self, references: &[PrimRef<S>], scene: &Aabb<S>) -> Option<Vec<u64>> {
+        (**self).codes(references, scene)
     }
 
     fn spare(&self, primitives: usize) -> usize {
@@ -134,11 +138,6 @@ pub enum Split<S = f32> {
     Count {
         /// The axis along which to count.
         axis: Axis,
-        /// How many go left.
-        left: usize,
-    },
-    /// Left, the first `left` references as they lie in the node.
-    InOrder {
         /// How many go left.
         left: usize,
     },

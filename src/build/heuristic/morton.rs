@@ -1,10 +1,9 @@
 //! Splits along a space-filling curve.
 
-use super::{BuildNode, Heuristic, SahCost, Split};
+use super::{BuildNode, Heuristic, Median, Split};
 use crate::build::reference::PrimRef;
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
-use alloc::vec;
 use alloc::vec::Vec;
 
 /// Sorts references once along Morton's curve, and splits where the highest bit changes (Lauterbach et al., Fast BVH
@@ -19,27 +18,14 @@ pub struct Morton;
 const BITS: u32 = 16;
 
 impl<S: Scalar> Heuristic<S> for Morton {
-    fn prepare(&self, references: &mut Vec<PrimRef<S>>, scene: &Aabb<S>) {
+    fn codes(&self, references: &[PrimRef<S>], scene: &Aabb<S>) -> Option<Vec<u64>> {
         let grid = Grid::new(scene);
-        let codes = parallel::collect(references, |place, reference| (grid.code(reference), place as u32));
-        let sorted = sorted(codes);
-        *references = parallel::collect(&sorted, |_, &(_, place)| references[place as usize]);
+        Some(parallel::collect(references, |_, reference| grid.code(reference)))
     }
 
+    /// Of a heuristic that asks this one but does not pass its codes on: equal halves.
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
-        let (references, n) = (node.references, node.references.len());
-        if SahCost::is_block(node) || n <= node.max_leaf_size {
-            return Split::Leaf;
-        }
-        let grid = Grid::new(&node.scene);
-        let (first, last) = (grid.code(&references[0]), grid.code(&references[n - 1]));
-        let changed = first ^ last;
-        if changed == 0 {
-            return Split::InOrder { left: n / 2 };
-        }
-        let highest = 1 << changed.ilog2();
-        let left = references.partition_point(|reference| grid.code(reference) & highest == 0);
-        Split::InOrder { left }
+        Median.split(node)
     }
 }
 
@@ -74,30 +60,6 @@ fn spread(bits: u64) -> u64 {
     (bits | bits << 2) & 0x0000_2492_4924_9249
 }
 
-/// By code, those of equal codes as they lie: a radix sort, eleven bits at a time from the lowest on.
-fn sorted(mut codes: Vec<(u64, u32)>) -> Vec<(u64, u32)> {
-    const DIGIT: u32 = 11;
-    let mut other = vec![(0, 0); codes.len()];
-    for shift in (0..3 * BITS).step_by(DIGIT as usize) {
-        let digit = |code: u64| (code >> shift) as usize & ((1 << DIGIT) - 1);
-        let mut places = [0u32; 1 << DIGIT];
-        for &(code, _) in &codes {
-            places[digit(code)] += 1;
-        }
-        let mut sum = 0;
-        for place in &mut places {
-            sum += core::mem::replace(place, sum);
-        }
-        for &item in &codes {
-            let place = &mut places[digit(item.0)];
-            other[*place as usize] = item;
-            *place += 1;
-        }
-        core::mem::swap(&mut codes, &mut other);
-    }
-    codes
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -108,20 +70,5 @@ mod tests {
             let expected = (0..16).fold(0, |sum, k| sum | (bits >> k & 1) << (3 * k));
             assert_eq!(spread(bits), expected, "{bits:x}");
         }
-    }
-
-    #[test]
-    fn sorting_keeps_the_order_of_equals() {
-        let mut state = 1u64;
-        let codes: Vec<(u64, u32)> = (0..10_000)
-            .map(|i| {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                // Few different ones, in all digits.
-                (((state >> 60) * 0x1111_1111_1111) & ((1 << 48) - 1), i)
-            })
-            .collect();
-        let mut expected = codes.clone();
-        expected.sort();
-        assert_eq!(sorted(codes), expected);
     }
 }

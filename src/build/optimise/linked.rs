@@ -205,14 +205,14 @@ impl<S: Scalar> Linked<S> {
 mod tests {
     use super::*;
     use crate::heuristic::{BuildNode, Heuristic, Split};
-    use crate::{Bvh, Sphere};
+    use crate::{Axis, Bvh, Sphere};
 
     /// Two halves, then one by one: two chains.
     struct Chains;
 
     impl Heuristic<f32> for Chains {
         fn split(&self, node: &BuildNode<'_>) -> Split {
-            Split::InOrder { left: if node.depth == 0 { node.references.len() / 2 } else { 1 } }
+            Split::Count { axis: Axis::X, left: if node.depth == 0 { node.references.len() / 2 } else { 1 } }
         }
     }
 

@@ -1,0 +1,160 @@
+//! The build without splits: references are sorted by codes along a curve, and the tree follows the codes' bits.
+//!
+//! ```text
+//! codes -> keys (code, place: all different) -> sorted -> top, split where the highest bit changes, down to tasks
+//!       -> tasks, each in one pass from the leaves up -> joined
+//! ```
+//!
+//! No path is longer than a key has bits, which is [`MAX_DEPTH`](crate::MAX_DEPTH): each step down settles one.
+
+use super::radix::sorted;
+use super::reference::{PrimRef, bounds};
+use super::subtree::{Parent, Subtree, join, task_child, task_of};
+use super::watch::{Pace, Watch};
+use crate::geometry::{Aabb, Scalar};
+use crate::parallel;
+use crate::tree::{Child, MAX_DEPTH, Node};
+use alloc::vec;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+/// References in a task at the most.
+const TASK_SIZE: usize = 4096;
+
+const _: () = assert!(u64::BITS as usize <= MAX_DEPTH);
+
+/// The tree over references, as many as there are codes, and at least one.
+pub(super) fn build<S: Scalar>(
+    references: &[PrimRef<S>],
+    codes: &[u64],
+    max_leaf_size: usize,
+    watch: &Watch<'_>,
+) -> Subtree<S> {
+    let place_bits = usize::BITS - (references.len() - 1).leading_zeros();
+    let code_bits = u64::BITS - codes.iter().fold(0, |all, code| all | code).leading_zeros();
+    // Codes lose their lowest bits if they have too many.
+    let lost = (code_bits + place_bits).saturating_sub(u64::BITS);
+    let keys =
+        parallel::collect(codes, |place, code| (code >> lost).unbounded_shl(place_bits) | place as u64);
+    let keys = sorted(keys, place_bits, place_bits + code_bits - lost);
+    let (mut top, tasks) = build_top(&keys);
+    let order = Order { references, place: (1 << place_bits) - 1, max_leaf_size };
+    let built = parallel::map(tasks, |task: Range<usize>| {
+        if watch.ask() == Pace::Stop {
+            return (Subtree::with_capacity(0, 0), Aabb::EMPTY);
+        }
+        watch.place(task.len());
+        order.build(&keys[task])
+    });
+    let (subtrees, boxes): (Vec<_>, Vec<_>) = built.into_iter().unzip();
+    // Children lie behind their parents.
+    for index in (0..top.nodes.len()).rev() {
+        let children = top.nodes[index].children;
+        let boxes = children.map(|child| match task_of(child, &top) {
+            Some(task) => boxes[task],
+            None => top.nodes[child.first as usize].union(),
+        });
+        top.nodes[index] = Node { children, ..Node::new(boxes) };
+    }
+    join(top, &subtrees)
+}
+
+/// The nodes of more than [`TASK_SIZE`] keys, without their boxes, and the tasks below them.
+fn build_top<S: Scalar>(keys: &[u64]) -> (Subtree<S>, Vec<Range<usize>>) {
+    let (mut top, mut tasks) = (Subtree::with_capacity(0, 0), Vec::new());
+    let mut open: Vec<(Parent, Range<usize>)> = vec![(None, 0..keys.len())];
+    while let Some((parent, range)) = open.pop() {
+        let keys = &keys[range.clone()];
+        let ([first, .., last], true) = (keys, keys.len() > TASK_SIZE) else {
+            top.refer(parent, task_child(tasks.len()));
+            tasks.push(range);
+            continue;
+        };
+        let highest = (first ^ last).ilog2();
+        let border = range.start + keys.partition_point(|key| key >> highest & 1 == 0);
+        let node = top.push(parent, [Aabb::EMPTY; 2]);
+        open.push((Some((node, 1)), border..range.end));
+        open.push((Some((node, 0)), range.start..border));
+    }
+    (top, tasks)
+}
+
+/// What the keys stand for.
+struct Order<'r, S> {
+    references: &'r [PrimRef<S>],
+    /// The bits of a key that are the reference's place.
+    place: u64,
+    max_leaf_size: usize,
+}
+
+/// Neighbouring keys below one node, or in one leaf that may still grow.
+struct Part<S> {
+    keys: Range<usize>,
+    /// The node with its box.
+    node: Option<(Child, Aabb<S>)>,
+}
+
+impl<S: Scalar> Order<'_, S> {
+    /// Builds the tree over sorted keys, with its box.
+    ///
+    /// A node ends where neighbouring keys differ in a higher bit than any two inside. Keys come from the right, and the
+    /// nodes that await what is on their left lie on a stack: so nodes are made right side first and parents last,
+    /// which backwards is depth first.
+    fn build(&self, keys: &[u64]) -> (Subtree<S>, Aabb<S>) {
+        let difference = |border: usize| match (border, keys.get(border)) {
+            (1.., Some(key)) => key ^ keys[border - 1],
+            _ => u64::MAX,
+        };
+        let mut nodes = Vec::with_capacity(keys.len() / 4);
+        let mut open: Vec<Part<S>> = Vec::with_capacity(MAX_DEPTH + 1);
+        for first in (0..keys.len()).rev() {
+            let mut part = Part { keys: first..first + 1, node: None };
+            let on_the_left = difference(first);
+            while difference(part.keys.end) < on_the_left
+                && let Some(right) = open.pop()
+            {
+                part = self.above(part, right, keys, &mut nodes);
+            }
+            open.push(part);
+        }
+        let indices = keys.iter().map(|key| self.reference(key).index).collect();
+        let Some(root) = open.pop() else {
+            return (Subtree { nodes, root: Child::default(), indices }, Aabb::EMPTY);
+        };
+        let (root, aabb) = self.settled(root, keys);
+        // Numbers are counted from the last node made.
+        let last = nodes.len().wrapping_sub(1) as u32;
+        let turned =
+            |child: Child| if child.is_leaf() { child } else { Child { first: last - child.first, ..child } };
+        nodes.reverse();
+        for node in &mut nodes {
+            node.children = node.children.map(turned);
+        }
+        (Subtree { nodes, root: turned(root), indices }, aabb)
+    }
+
+    /// The node above two parts, or a leaf of both.
+    fn above(&self, left: Part<S>, right: Part<S>, keys: &[u64], nodes: &mut Vec<Node<S>>) -> Part<S> {
+        let both = left.keys.start..right.keys.end;
+        if both.len() <= self.max_leaf_size {
+            return Part { keys: both, node: None };
+        }
+        let ((left, left_box), (right, right_box)) = (self.settled(left, keys), self.settled(right, keys));
+        let index = nodes.len();
+        nodes.push(Node { children: [left, right], ..Node::new([left_box, right_box]) });
+        Part { keys: both, node: Some((Child::inner(index), left_box.union(right_box))) }
+    }
+
+    /// A part that does not grow any more.
+    fn settled(&self, part: Part<S>, keys: &[u64]) -> (Child, Aabb<S>) {
+        let leaf = || {
+            let references = keys[part.keys.clone()].iter().map(|key| self.reference(key));
+            (Child::leaf(part.keys.clone()), bounds(references))
+        };
+        part.node.unwrap_or_else(leaf)
+    }
+
+    fn reference(&self, key: &u64) -> &PrimRef<S> {
+        &self.references[(key & self.place) as usize]
+    }
+}

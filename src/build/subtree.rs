@@ -1,0 +1,114 @@
+//! Parts of a tree that were built by themselves, and the tree made of them.
+
+use crate::geometry::{Aabb, Scalar};
+use crate::parallel;
+use crate::tree::{Child, Node};
+use alloc::vec;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+/// Nodes with the child that refers to the first of them, and the indices in the slots of their leaves.
+pub(super) struct Subtree<S> {
+    pub nodes: Vec<Node<S>>,
+    pub root: Child,
+    pub indices: Vec<u32>,
+}
+
+/// The inner node and the side that refers to a child; none for the root.
+pub(super) type Parent = Option<(usize, usize)>;
+
+impl<S: Scalar> Subtree<S> {
+    pub fn with_capacity(nodes: usize, indices: usize) -> Self {
+        Self {
+            nodes: Vec::with_capacity(nodes),
+            root: Child::default(),
+            indices: Vec::with_capacity(indices),
+        }
+    }
+
+    pub fn refer(&mut self, parent: Parent, child: Child) {
+        match parent {
+            Some((node, side)) => self.nodes[node].children[side] = child,
+            None => self.root = child,
+        }
+    }
+
+    /// Makes an inner node above children with these boxes, and tells its number.
+    pub fn push(&mut self, parent: Parent, boxes: [Aabb<S>; 2]) -> usize {
+        let index = self.nodes.len();
+        self.refer(parent, Child::inner(index));
+        self.nodes.push(Node::new(boxes));
+        index
+    }
+
+    /// Makes a leaf.
+    pub fn push_leaf(&mut self, parent: Parent, indices: impl Iterator<Item = u32>) {
+        let first = self.indices.len();
+        self.indices.extend(indices);
+        self.refer(parent, Child::leaf(first..self.indices.len()));
+    }
+}
+
+/// Instead of the number of a node, in the top: the number of a task, counted from the end.
+pub(super) fn task_child(task: usize) -> Child {
+    Child::inner(u32::MAX as usize - task)
+}
+
+/// The number of the task that stands for a child of the top, if one does.
+pub(super) fn task_of<S>(child: Child, top: &Subtree<S>) -> Option<usize> {
+    let is_task = !child.is_leaf() && child.first as usize >= top.nodes.len();
+    is_task.then(|| (u32::MAX - child.first) as usize)
+}
+
+/// The top and the subtrees of its tasks as one tree, a left child the node after its parent everywhere, and slots in the
+/// order of the leaves.
+pub(super) fn join<S: Scalar>(mut top: Subtree<S>, subtrees: &[Subtree<S>]) -> Subtree<S> {
+    // Which nodes and slots follow one another, and by how much those of subtrees move.
+    let (mut nodes, mut slots): (Vec<(Range<usize>, Option<usize>, Move)>, Vec<&[u32]>) = Default::default();
+    let mut end = Move { node: 0, slot: 0 };
+    let top_indices = core::mem::take(&mut top.indices);
+    let mut open = vec![(None, top.root)];
+    while let Some((parent, child)) = open.pop() {
+        let moved = if child.is_leaf() {
+            let indices = &top_indices[child.slots()];
+            let leaf = Child { first: end.slot, ..child };
+            slots.push(indices);
+            end.slot += indices.len() as u32;
+            leaf
+        } else if let Some(task) = task_of(child, &top) {
+            let Subtree { nodes: inner, root, indices } = &subtrees[task];
+            let root = end.of(*root);
+            nodes.push((0..inner.len(), Some(task), end));
+            slots.push(indices);
+            end = Move { node: end.node + inner.len() as u32, slot: end.slot + indices.len() as u32 };
+            root
+        } else {
+            let node = child.first as usize;
+            open.extend([1, 0].map(|side| (Some((node, side)), top.nodes[node].children[side])));
+            nodes.push((node..node + 1, None, Move { node: 0, slot: 0 }));
+            end.node += 1;
+            Child::inner(end.node as usize - 1)
+        };
+        top.refer(parent, moved);
+    }
+    let parts = nodes.into_iter().map(|(range, task, by)| {
+        let subtree = task.map_or(&top, |task| &subtrees[task]);
+        let nodes = subtree.nodes[range].iter();
+        nodes.map(move |node| Node { children: node.children.map(|child| by.of(child)), ..*node })
+    });
+    let indices = parallel::concat(slots.into_iter().map(|slots| slots.iter().copied()).collect());
+    Subtree { nodes: parallel::concat(parts.collect()), root: top.root, indices }
+}
+
+/// By how much numbers of nodes and of slots grow.
+#[derive(Clone, Copy)]
+struct Move {
+    node: u32,
+    slot: u32,
+}
+
+impl Move {
+    fn of(self, child: Child) -> Child {
+        Child { first: child.first + if child.is_leaf() { self.slot } else { self.node }, ..child }
+    }
+}
