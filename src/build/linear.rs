@@ -13,6 +13,7 @@ use super::subtree::{Parent, Subtree, join, task_child, task_of};
 use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
+use crate::simd::prefetch;
 use crate::tree::{Child, MAX_DEPTH, Node};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -20,6 +21,9 @@ use core::ops::Range;
 
 /// References in a task at the most.
 const TASK_SIZE: usize = 4096;
+
+/// References lie in the input's order: how many before one's turn it is asked for.
+const AHEAD: usize = 32;
 
 const _: () = assert!(u64::BITS as usize <= MAX_DEPTH);
 
@@ -108,6 +112,9 @@ impl<S: Scalar> Order<'_, S> {
         let mut nodes = Vec::with_capacity(keys.len() / 4);
         let mut open: Vec<Part<S>> = Vec::with_capacity(MAX_DEPTH + 1);
         for first in (0..keys.len()).rev() {
+            if let Some(ahead) = first.checked_sub(AHEAD) {
+                prefetch(core::ptr::from_ref(self.reference(&keys[ahead])).cast(), size_of::<PrimRef<S>>());
+            }
             let mut part = Part { keys: first..first + 1, node: None };
             let on_the_left = difference(first);
             while difference(part.keys.end) < on_the_left

@@ -1,5 +1,6 @@
 //! Nodes and leaves of different sizes, one after another in line-aligned memory.
 
+use crate::simd::prefetch;
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -143,20 +144,5 @@ impl Part<'_> {
         unsafe {
             core::slice::from_raw_parts_mut(self.lines.as_mut_ptr().cast::<u8>().add(offset).cast(), len)
         }
-    }
-}
-
-/// Asks for lines to be brought into the cache. Any address will do.
-#[inline(always)]
-pub(super) fn prefetch(first: *const u8, bytes: usize) {
-    for line in 0..bytes.div_ceil(Line::BYTES) {
-        #[cfg(target_arch = "x86_64")]
-        {
-            use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            // SAFETY: no address is wrong to ask for, and SSE is part of every x86-64.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(Line::BYTES * line).cast()) }
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        let _ = (first, line);
     }
 }

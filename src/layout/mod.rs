@@ -16,7 +16,7 @@ pub(crate) use wide::{MAX_PENDING, Reference};
 
 use crate::geometry::{Aabb, Scalar};
 use crate::primitive::{Intersect, LEAF_WIDTH, Leaf, Primitive};
-use crate::simd::{Count, Width};
+use crate::simd::{Count, Width, prefetch};
 use crate::tree::{Child, Node, Tree};
 
 /// How a hierarchy lies in memory: [`WideTree`], the default, for speed; [`CompactTree`], for few bytes; [`Tree`], as it was
@@ -156,6 +156,6 @@ impl<P: Intersect> Contents<P::Scalar> for &[P] {
     }
     fn prefetch(&self, index: u32) {
         let primitive = self.as_ptr().wrapping_add(index as usize).cast();
-        blocks::prefetch(primitive, size_of::<P>().min(128));
+        prefetch(primitive, size_of::<P>().min(128));
     }
 }

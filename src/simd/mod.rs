@@ -9,9 +9,11 @@ mod avx512;
 mod backend;
 mod lanes;
 mod pairs;
+mod prefetch;
 
 pub use backend::InstructionSet;
 pub(crate) use backend::{Backend, Kernel};
 pub(crate) use lanes::{Count, Pair, Width, Window};
 pub use lanes::{Halves, Lanes};
 pub use pairs::Lanes4;
+pub(crate) use prefetch::prefetch;
