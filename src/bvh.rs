@@ -134,7 +134,7 @@ impl<P: Primitive, L: Layout<P>> Bvh<P, L> {
             + size_of::<u32>() * self.skipped.capacity()
     }
 
-    /// Checks every invariant that queries rely on, in O(n): for tests and for the wary.
+    /// Checks every invariant that queries rely on, in O(n log n): for tests and for the wary.
     ///
     /// # Errors
     /// The first invariant found broken. Never for a tree as built, unless a primitive's box
@@ -219,7 +219,8 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
     /// [`closest_hit`](Self::closest_hit) of each ray, the same bits, in the place of the same number. If there are more
     /// rays than places or more places than rays, the others are left alone.
     ///
-    /// Several rays are traced in turns, so that one goes on while others wait for memory: see the README for what it gains.
+    /// With the feature `std`, a first part of a long list is traced both one by one and several rays in turns, so that one goes
+    /// on while others wait for memory, and the rest in whichever way a clock found quicker: see the README for what that gains.
     ///
     /// ```
     /// use bvhkit::{Bvh, Ray, Sphere};

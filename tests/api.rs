@@ -217,7 +217,7 @@ fn an_instruction_set_is_what_was_asked_for_or_an_error() {
     let available: Vec<_> = InstructionSet::available().collect();
     assert_eq!(available.last(), Some(&InstructionSet::best()));
     assert_eq!(Bvh::build(row(9)).unwrap().instruction_set(), InstructionSet::best());
-    for set in InstructionSet::ALL {
+    for &set in InstructionSet::ALL {
         let built = Bvh::builder().instruction_set(set).build(row(9)).map(|bvh| bvh.instruction_set());
         let expected =
             if available.contains(&set) { Ok(set) } else { Err(BuildError::NoInstructionSet(set)) };

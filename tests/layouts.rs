@@ -17,8 +17,9 @@ mod generate {
 
 use bvhkit::heuristic::Heuristic;
 use bvhkit::{
-    Barycentrics, Builder, Bvh, CompactTree, Fast, InstructionSet, Intersect, OnInvalid, OneByOne, Precise,
-    Quality, Ray, Scalar, Traverse, Tree, Triangle, Watertight, WatertightLeaf, WideTree, reference,
+    Aabb, Barycentrics, Builder, Bvh, CompactTree, Fast, InstructionSet, Intersect, Lanes, Leaf, OnInvalid,
+    OneByOne, Operands, Precise, PreparedRay, Primitive, Quality, Ray, Scalar, Sphere, Traverse, Tree,
+    Triangle, Watertight, WatertightLeaf, WideTree, reference,
 };
 use common::alone::Alone;
 use common::answers::{Key, Payload, key};
@@ -242,6 +243,46 @@ fn solids() {
 #[test]
 fn sloppy_discs() {
     over_the_soups(discs::<f32>, |soup, _, rng| soups::ray(soup, rng), in_every_layout);
+}
+
+/// A sphere whose leaf says of all lanes that they may be hit, of those without a primitive too.
+struct Suspected(Sphere);
+struct AllLanes;
+
+impl Primitive for Suspected {
+    type Scalar = f32;
+
+    fn aabb(&self) -> Aabb {
+        self.0.aabb()
+    }
+}
+
+impl Intersect for Suspected {
+    type Payload = ();
+    type Leaf = AllLanes;
+
+    fn intersect(&self, ray: &PreparedRay) -> Option<(f32, ())> {
+        self.0.intersect(ray)
+    }
+
+    fn put_operands(&self, operands: &mut [f32]) {
+        operands.fill(1.0);
+    }
+}
+
+impl Leaf<f32, ()> for AllLanes {
+    const OPERANDS: usize = 1;
+
+    fn candidates<L: Lanes<f32>>(operands: &Operands<'_, f32, L>, _: &PreparedRay, _: f32) -> L::Mask {
+        let (zero, some) = (operands.splat(0.0), operands.get(0));
+        zero.le(zero) | some.le(some)
+    }
+}
+
+#[test]
+fn a_leaf_that_leaves_no_lane_out() {
+    let suspected = |soup: &[Corners<f32>]| spheres(soup).into_iter().map(Suspected).collect();
+    over_the_soups(suspected, |soup, _, rng| soups::ray(soup, rng), in_every_layout);
 }
 
 /// Packed side by side or asked one by one, whatever is behind the pointers.

@@ -5,15 +5,26 @@ mod common {
     pub mod hostile;
 }
 
-use bvhkit::heuristic::{Heuristic, Median, SpatialSah};
+use bvhkit::heuristic::{BinnedSah, BuildNode, Heuristic, Median, Morton, SpatialSah, Split};
 use bvhkit::{
-    BuildError, Bvh, Fast, Hit, MAX_DEPTH, Optimise, Pace, Quality, Ray, Tree, Triangle, reference,
+    Aabb, Axis, BuildError, Bvh, Fast, Hit, MAX_DEPTH, Optimise, Pace, PrimRef, Quality, Ray, Tree, Triangle,
+    reference,
 };
 use common::heuristics;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
+
+/// Proposes always the same.
+struct Stubborn(fn(usize) -> Split);
+
+impl Heuristic<f32> for Stubborn {
+    fn split(&self, node: &BuildNode<'_>) -> Split {
+        self.0(node.references.len())
+    }
+}
 
 /// Small triangles, and every tenth as long as the scene.
 fn triangles(n: usize) -> Vec<Fast<Triangle>> {
@@ -53,7 +64,7 @@ fn reinsertion_gains_keeps_every_invariant_and_does_the_same_on_any_number_of_th
     let optimise = Optimise { share: 0.2, rounds: 3 };
     for (name, heuristic) in heuristics::all() {
         let builder = || Bvh::builder().heuristic(&*heuristic).max_leaf_size(2).layout::<Tree>();
-        let mut bvh = builder().build(&triangles).unwrap();
+        let mut bvh = builder().optimise(Optimise::NONE).build(&triangles).unwrap();
         let before = bvh.report();
         let gain = bvh.optimise(&optimise);
         bvh.check().unwrap();
@@ -128,17 +139,141 @@ fn a_build_stops_when_it_is_told_to() {
     }
 }
 
+/// Says `pace` from a progress on.
+fn from(limit: f64, pace: Pace) -> impl Fn(f64) -> Pace + Send + Sync + 'static {
+    move |progress| if progress >= limit { pace } else { Pace::Steady }
+}
+
 #[test]
 fn a_build_in_a_hurry_is_coarser_and_answers_alike() {
     let triangles = triangles(50_000);
-    let cost = |limit: f64| {
-        let watcher = move |progress| if progress >= limit { Pace::Hurry } else { Pace::Steady };
-        let builder = Bvh::builder().heuristic(Median).threads(1).watch(watcher);
-        let bvh = builder.build(&triangles).unwrap();
+    let builder = || Bvh::builder().heuristic(BinnedSah::default()).threads(1).layout::<Tree>();
+    let hurried = |limit: f64| {
+        let bvh = builder().watch(from(limit, Pace::Hurry)).build(&triangles).unwrap();
         bvh.check().unwrap();
-        bvh.report().sah_cost
+        bvh
     };
+    let cost = |limit: f64| hurried(limit).report().sah_cost;
     let (at_once, half_way, never) = (cost(0.0), cost(0.5), cost(2.0));
     assert!(at_once > half_way && half_way > never, "{at_once} {half_way} {never}");
-    assert_answers(&triangles[..3_000], Bvh::builder().time_budget(Duration::ZERO));
+    let sorted = builder().heuristic(Morton).build(&triangles).unwrap();
+    assert!(hurried(0.0).layout() == sorted.layout(), "what is left is sorted");
+    let out_of_time = builder().time_budget(Duration::ZERO).build(&triangles).unwrap();
+    assert!(out_of_time.layout() == sorted.layout(), "no time at all");
+    for limit in [0.0, 0.3] {
+        assert_answers(&triangles[..20_000], Bvh::builder().watch(from(limit, Pace::Hurry)));
+    }
+}
+
+#[test]
+fn a_hurry_below_a_long_path_keeps_the_depth_bound() {
+    // One by one down to half of the depth, then told to hurry.
+    let asked = Arc::new(AtomicUsize::new(0));
+    let watcher = {
+        let asked = Arc::clone(&asked);
+        move |_| if asked.fetch_add(1, Relaxed) < 40 { Pace::Steady } else { Pace::Hurry }
+    };
+    let builder = Bvh::builder().heuristic(Stubborn(|_| Split::Count { axis: Axis::X, left: 1 }));
+    let bvh =
+        builder.threads(1).max_leaf_size(1).watch(watcher).layout::<Tree>().build(triangles(20_000)).unwrap();
+    bvh.check().unwrap();
+    let depth = bvh.report().max_depth;
+    assert!(depth > 50 && depth <= MAX_DEPTH, "{depth}");
+}
+
+#[test]
+fn a_build_in_a_hurry_is_not_optimised_and_may_still_be_stopped() {
+    let triangles = triangles(20_000);
+    let builder = || Bvh::builder().threads(1).layout::<Tree>();
+    let plain = builder().heuristic(BinnedSah::new(16)).build(&triangles).unwrap();
+    let hurried = builder().watch(from(1.0, Pace::Hurry)).build(&triangles).unwrap();
+    assert!(hurried.layout() == plain.layout());
+    assert!(hurried.layout() != builder().build(&triangles).unwrap().layout());
+    let asked = AtomicUsize::new(0);
+    let watcher = move |_| if asked.fetch_add(1, Relaxed) == 0 { Pace::Hurry } else { Pace::Stop };
+    assert_eq!(builder().watch(watcher).build(&triangles).unwrap_err(), BuildError::Stopped);
+}
+
+#[test]
+fn optimisation_asks_on() {
+    let asked = Arc::new(AtomicUsize::new(0));
+    let watcher = {
+        let asked = Arc::clone(&asked);
+        move |progress| {
+            let done = progress >= 1.0 && asked.fetch_add(1, Relaxed) > 20;
+            if done { Pace::Stop } else { Pace::Steady }
+        }
+    };
+    let builder = Bvh::builder().optimise(Optimise { share: 0.5, rounds: 9 }).watch(watcher);
+    assert_eq!(builder.build(triangles(20_000)).unwrap_err(), BuildError::Stopped);
+}
+
+#[test]
+fn options_are_kept_in_any_order() {
+    let triangles = triangles(3_000);
+    let (optimise, builder) = (Optimise { share: 0.3, rounds: 4 }, || Bvh::builder().layout::<Tree>());
+    let before = builder().optimise(optimise).heuristic(Median).build(&triangles).unwrap();
+    let behind = builder().heuristic(Median).optimise(optimise).build(&triangles).unwrap();
+    let without = builder().heuristic(Median).build(&triangles).unwrap();
+    assert!(before.layout() == behind.layout() && before.layout() != without.layout());
+    let preset = builder().quality(Quality::High).build(&triangles).unwrap();
+    let plain = builder()
+        .optimise(Optimise { share: 0.0, rounds: 0 })
+        .quality(Quality::High)
+        .build(&triangles)
+        .unwrap();
+    assert!(preset.layout() != plain.layout());
+}
+
+/// Codes of these numbers of bits, as many as references and more.
+struct Coded(fn(usize) -> u64, usize);
+
+impl Heuristic<f32> for Coded {
+    fn codes(&self, references: &[PrimRef], _: &Aabb) -> Option<Vec<u64>> {
+        Some((0..references.len() + self.1).map(self.0).collect())
+    }
+    fn split(&self, node: &BuildNode<'_>) -> Split {
+        Median.split(node)
+    }
+}
+
+#[test]
+fn any_codes_make_a_tree_and_as_many_as_there_are_references() {
+    let triangles = triangles(10_000);
+    let codes: [fn(usize) -> u64; 6] = [
+        |_| 0,
+        |_| u64::MAX,
+        |i| i as u64,
+        |i| (i as u64).reverse_bits(),
+        |i| 1u64.checked_shl(i as u32 % 70).unwrap_or(0),
+        |i| (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15),
+    ];
+    for (number, code) in codes.into_iter().enumerate() {
+        for max_leaf_size in [1, 8, 20_000] {
+            let builder =
+                || Bvh::builder().heuristic(Coded(code, 0)).max_leaf_size(max_leaf_size).layout::<Tree>();
+            let bvh = builder().threads(1).build(&triangles).unwrap();
+            bvh.check().unwrap();
+            assert!(
+                bvh.report().max_depth <= MAX_DEPTH && bvh.report().leaf_sizes.max <= max_leaf_size,
+                "{number}"
+            );
+            assert!(bvh.layout() == builder().threads(3).build(&triangles).unwrap().layout(), "{number}");
+        }
+    }
+    let in_order = Bvh::builder().heuristic(Coded(|i| i as u64, 0)).max_leaf_size(1).layout::<Tree>();
+    assert_eq!(in_order.build(&triangles[..8192]).unwrap().report().max_depth, 13, "13 bits");
+    let ignored = Bvh::builder().heuristic(Coded(|_| 0, 1)).layout::<Tree>().build(&triangles).unwrap();
+    let median = Bvh::builder().heuristic(Median).layout::<Tree>().build(&triangles).unwrap();
+    assert!(ignored.layout() == median.layout(), "one code too many");
+}
+
+#[test]
+fn an_absurd_growth_is_bounded() {
+    for growth in [f64::INFINITY, 1e30, f64::NAN, -1.0] {
+        let heuristic = SpatialSah { overlap: 0.0, growth, ..SpatialSah::default() };
+        let bvh = Bvh::builder().heuristic(heuristic).build(triangles(500)).unwrap();
+        bvh.check().unwrap();
+        assert!(bvh.report().references <= 500 * (1 + SpatialSah::MAX_GROWTH as usize));
+    }
 }

@@ -83,16 +83,6 @@ impl<'r, S: Scalar> Set<'r, S> {
         Ok(self.divided(middle))
     }
 
-    /// Divides the set into halves as it lies, or answers `Err` with itself if it may be a leaf.
-    pub fn halve<H: ?Sized>(self, rules: &Rules<'_, H>) -> Result<[Self; 2], Self> {
-        if self.len <= rules.max_leaf_size {
-            Err(self)
-        } else {
-            let middle = self.len / 2;
-            Ok(self.divided(middle))
-        }
-    }
-
     /// The references before `middle` on one side, the others on the other.
     fn divided(self, middle: usize) -> [Self; 2] {
         let n = self.len;

@@ -1,7 +1,7 @@
 //! The order of the build: large nodes level by level, the many small ones as tasks of their own.
 //!
 //! 1. **Top.** All open nodes of a level are divided at once, on all threads; those with at most
-//!    [`TASK_SIZE`] references become tasks.
+//!    [`TASK_SIZE`] references become tasks, and so does what is left when the build has to hurry.
 //! 2. **Tasks.** Each builds its subtree into a list of its own, depth first.
 //! 3. **Join.** The top and the lists are laid out depth first.
 //!
@@ -10,7 +10,7 @@
 //! heuristic's good will.
 
 use super::divide::{Rules, Set};
-use super::heuristic::Heuristic;
+use super::heuristic::{Heuristic, codes};
 use super::linear;
 use super::reference::{PrimRef, bounds};
 use super::subtree::{Parent, Subtree, join, task_child};
@@ -42,27 +42,11 @@ fn push<'r, S: Scalar>(
     [OpenNode { set: left, parent: Some((index, 0)) }, OpenNode { set: right, parent: Some((index, 1)) }]
 }
 
-/// Makes a leaf.
-fn push_leaf<S: Scalar>(subtree: &mut Subtree<S>, parent: Parent, set: &Set<'_, S>) {
-    subtree.push_leaf(parent, set.references().iter().map(|reference| reference.index));
-}
-
 /// What is the same for all nodes.
 struct Build<'h, S, H: ?Sized> {
     rules: &'h Rules<'h, H>,
     watch: &'h Watch<'h>,
     scene: Aabb<S>,
-}
-
-impl<S: Scalar, H: Heuristic<S> + ?Sized> Build<'_, S, H> {
-    /// Two sets of one, or the set itself if it is to be a leaf.
-    fn divide<'r>(&self, set: Set<'r, S>, pace: Pace) -> Result<[Set<'r, S>; 2], Set<'r, S>> {
-        match pace {
-            Pace::Steady => set.divide(self.rules, &self.scene),
-            Pace::Hurry => set.halve(self.rules),
-            Pace::Stop => Err(set),
-        }
-    }
 }
 
 /// Builds the tree over valid references; none if it was told to stop.
@@ -77,7 +61,7 @@ pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
     } else {
         match rules.heuristic.codes(&references, &aabb) {
             Some(codes) if codes.len() == primitives => {
-                linear::build(&references, &codes, rules.max_leaf_size, watch)
+                linear::build(&references, &codes, 0, rules.max_leaf_size, watch)
             }
             _ => build_by_splits(references, aabb, rules, watch),
         }
@@ -107,7 +91,8 @@ fn build_by_splits<S: Scalar, H: Heuristic<S> + ?Sized>(
     join(top, &subtrees)
 }
 
-/// Divides all sets of more than [`TASK_SIZE`] references, and returns the others as tasks.
+/// Divides all sets of more than [`TASK_SIZE`] references, and returns the others as tasks; and, once the build is not steady
+/// any more, those that are left.
 fn build_top<'r, S: Scalar, H: Heuristic<S> + ?Sized>(
     root: OpenNode<'r, S>,
     build: &Build<'_, S, H>,
@@ -116,18 +101,19 @@ fn build_top<'r, S: Scalar, H: Heuristic<S> + ?Sized>(
     let mut tasks = Vec::new();
     let mut level = vec![root];
     while !level.is_empty() {
-        let (large, small): (Vec<_>, Vec<_>) = level.into_iter().partition(|node| node.set.len > TASK_SIZE);
-        for task in small {
-            top.refer(task.parent, task_child(tasks.len()));
-            tasks.push(task.set);
-        }
-        let parents: Vec<_> = large.iter().map(|node| node.parent).collect();
+        let divided = parallel::map(level, |OpenNode { set, parent }| {
+            let is_task = set.len <= TASK_SIZE || build.watch.ask() != Pace::Steady;
+            (parent, if is_task { Err(set) } else { set.divide(build.rules, &build.scene) })
+        });
         level = Vec::new();
-        let divided = parallel::map(large, |node| build.divide(node.set, build.watch.ask()));
-        for (parent, divided) in parents.into_iter().zip(divided) {
+        for (parent, divided) in divided {
             match divided {
                 Ok(sides) => level.extend(push(&mut top, parent, sides)),
-                Err(set) => push_leaf(&mut top, parent, &set),
+                // A leaf, too.
+                Err(set) => {
+                    top.refer(parent, task_child(tasks.len()));
+                    tasks.push(set);
+                }
             }
         }
     }
@@ -139,19 +125,28 @@ fn build_subtree<S: Scalar, H: Heuristic<S> + ?Sized>(
     root: Set<'_, S>,
     build: &Build<'_, S, H>,
 ) -> Subtree<S> {
-    let (pace, len) = (build.watch.ask(), root.len);
+    let Build { rules, watch, scene } = build;
+    let len = root.len;
+    match watch.ask() {
+        Pace::Steady => {}
+        Pace::Hurry => {
+            let codes = codes(root.references(), scene);
+            return linear::build(root.references(), &codes, root.depth, rules.max_leaf_size, watch);
+        }
+        Pace::Stop => return Subtree::with_capacity(0, 0),
+    }
     let mut subtree = Subtree::with_capacity(len / 4, len);
     let mut open = vec![OpenNode { set: root, parent: None }];
     while let Some(OpenNode { set, parent }) = open.pop() {
-        match build.divide(set, pace) {
+        match set.divide(rules, scene) {
             Ok(sides) => {
                 let [left, right] = push(&mut subtree, parent, sides);
                 open.push(right);
                 open.push(left);
             }
-            Err(set) => push_leaf(&mut subtree, parent, &set),
+            Err(set) => subtree.push_leaf(parent, set.references().iter().map(|reference| reference.index)),
         }
     }
-    build.watch.place(len);
+    watch.place(len);
     subtree
 }

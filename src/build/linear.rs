@@ -5,7 +5,8 @@
 //!       -> tasks, each in one pass from the leaves up -> joined
 //! ```
 //!
-//! No path is longer than a key has bits, which is [`MAX_DEPTH`](crate::MAX_DEPTH): each step down settles one.
+//! No path is longer than a key has bits, of which there are [`MAX_DEPTH`](crate::MAX_DEPTH) at the most: each step down
+//! settles one.
 
 use super::radix::sorted;
 use super::reference::{PrimRef, bounds};
@@ -25,19 +26,21 @@ const TASK_SIZE: usize = 4096;
 /// References lie in the input's order: how many before one's turn it is asked for.
 const AHEAD: usize = 32;
 
-const _: () = assert!(u64::BITS as usize <= MAX_DEPTH);
+const _: () = assert!(MAX_DEPTH <= u64::BITS as usize);
 
-/// The tree over references, as many as there are codes, and at least one.
+/// The subtree over references, as many as there are codes, and at least one; `depth` is its root's, of which and of their
+/// number [`Set::divide`](super::divide::Set::divide) has the invariant.
 pub(super) fn build<S: Scalar>(
     references: &[PrimRef<S>],
     codes: &[u64],
+    depth: usize,
     max_leaf_size: usize,
     watch: &Watch<'_>,
 ) -> Subtree<S> {
     let place_bits = usize::BITS - (references.len() - 1).leading_zeros();
     let code_bits = u64::BITS - codes.iter().fold(0, |all, code| all | code).leading_zeros();
     // Codes lose their lowest bits if they have too many.
-    let lost = (code_bits + place_bits).saturating_sub(u64::BITS);
+    let lost = (code_bits + place_bits).saturating_sub((MAX_DEPTH - depth) as u32);
     let keys =
         parallel::collect(codes, |place, code| (code >> lost).unbounded_shl(place_bits) | place as u64);
     let keys = sorted(keys, place_bits, place_bits + code_bits - lost);

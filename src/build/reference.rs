@@ -21,6 +21,7 @@ pub struct PrimRef<S = f32> {
 
 /// What is wrong with a primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Flaw {
     /// A bound of its box is NaN.
     NanBox,
@@ -31,8 +32,9 @@ pub enum Flaw {
 }
 
 impl<S: Scalar> PrimRef<S> {
+    /// A reference to the primitive with an input index and a box: to try a heuristic by itself.
     #[inline(always)]
-    pub(crate) fn new(aabb: Aabb<S>, index: u32) -> Self {
+    pub fn new(aabb: Aabb<S>, index: u32) -> Self {
         Self { aabb, index, padding: 0 }
     }
 

@@ -60,22 +60,15 @@ pub(super) fn task_of<S>(child: Child, top: &Subtree<S>) -> Option<usize> {
     is_task.then(|| (u32::MAX - child.first) as usize)
 }
 
-/// The top and the subtrees of its tasks as one tree, a left child the node after its parent everywhere, and slots in the
+/// The top, which has no leaves, and the subtrees of its tasks as one tree, a left child the node after its parent everywhere, and slots in the
 /// order of the leaves.
 pub(super) fn join<S: Scalar>(mut top: Subtree<S>, subtrees: &[Subtree<S>]) -> Subtree<S> {
     // Which nodes and slots follow one another, and by how much those of subtrees move.
     let (mut nodes, mut slots): (Vec<(Range<usize>, Option<usize>, Move)>, Vec<&[u32]>) = Default::default();
     let mut end = Move { node: 0, slot: 0 };
-    let top_indices = core::mem::take(&mut top.indices);
     let mut open = vec![(None, top.root)];
     while let Some((parent, child)) = open.pop() {
-        let moved = if child.is_leaf() {
-            let indices = &top_indices[child.slots()];
-            let leaf = Child { first: end.slot, ..child };
-            slots.push(indices);
-            end.slot += indices.len() as u32;
-            leaf
-        } else if let Some(task) = task_of(child, &top) {
+        let moved = if let Some(task) = task_of(child, &top) {
             let Subtree { nodes: inner, root, indices } = &subtrees[task];
             let root = end.of(*root);
             nodes.push((0..inner.len(), Some(task), end));

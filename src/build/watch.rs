@@ -4,14 +4,15 @@ use alloc::sync::Arc;
 use core::fmt;
 use core::sync::atomic::{AtomicU8, AtomicUsize, Ordering::Relaxed};
 
-/// How a build goes on: what the watcher of [`Builder::watch`](crate::Builder::watch) answers. Once told to hurry or to
-/// stop, a build does.
+/// How a build goes on: what the watcher of [`Builder::watch`](crate::Builder::watch) answers. A build that was told to
+/// hurry may still be told to stop, but not to be steady again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Pace {
     /// As it was.
     Steady,
-    /// With whatever is done: what is not divided yet is divided into halves as it lies, and nothing is optimised. A
-    /// valid tree, and a coarser one.
+    /// With whatever is done: of what is not divided yet the tree is that of [`Morton`](crate::heuristic::Morton)'s curve,
+    /// and optimisation ends. A valid tree, coarser by what a sorting is coarser than the heuristic.
     Hurry,
     /// Not at all: [`BuildError::Stopped`](crate::BuildError::Stopped).
     Stop,
@@ -50,16 +51,16 @@ impl<'w> Watch<'w> {
     /// Tells how far the build is, and asks how it goes on.
     pub fn ask(&self) -> Pace {
         let pace = match self.pace() {
+            Pace::Stop => Pace::Stop,
             // More references than primitives may be placed.
-            Pace::Steady => (self.watcher)((self.placed.load(Relaxed) as f64 / self.total as f64).min(1.0)),
-            settled => settled,
+            _ => (self.watcher)((self.placed.load(Relaxed) as f64 / self.total as f64).min(1.0)),
         };
         self.pace.fetch_max(pace as u8, Relaxed);
         self.pace()
     }
 
     /// The strictest answer so far.
-    pub fn pace(&self) -> Pace {
+    fn pace(&self) -> Pace {
         match self.pace.load(Relaxed) {
             0 => Pace::Steady,
             1 => Pace::Hurry,

@@ -81,7 +81,7 @@ impl<P: Primitive, L> Builder<P, Quality, L> {
             max_leaf_size: None,
             threads: None,
             on_invalid: OnInvalid::default(),
-            optimise: Some(Quality::default().optimise()),
+            optimise: None,
             watcher: None,
             #[cfg(feature = "std")]
             time_budget: None,
@@ -115,17 +115,16 @@ impl<S: Scalar> Tree<S> {
 }
 
 impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
-    /// A preset, in place of the heuristic and the optimisation chosen so far.
+    /// A preset, in place of the heuristic chosen so far.
     #[must_use]
     pub fn quality(self, quality: Quality) -> Builder<P, Quality, L> {
-        self.heuristic(quality).optimise(quality.optimise())
+        self.heuristic(quality)
     }
 
-    /// One of [`heuristic`](crate::heuristic)'s, or your own, in place of the one chosen so far; and no
-    /// optimisation, unless [`optimise`](Self::optimise) follows.
+    /// One of [`heuristic`](crate::heuristic)'s, or your own, in place of the one chosen so far.
     #[must_use]
     pub fn heuristic<G: Heuristic<P::Scalar>>(self, heuristic: G) -> Builder<P, G, L> {
-        Builder { optimise: None, ..self.map(|_| heuristic) }
+        self.map(|_| heuristic)
     }
 
     /// The same with another heuristic or another layout.
@@ -182,14 +181,15 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         Self { threads: Some(threads), ..self }
     }
 
-    /// Makes the tree better once it is built, whatever the heuristic.
+    /// Makes the tree better once it is built, whatever the heuristic. Unless set, it is as the heuristic says:
+    /// [presets](Quality) are optimised, others are not; [`Optimise::NONE`] keeps presets from it.
     #[must_use]
     pub fn optimise(self, optimise: Optimise) -> Self {
         Self { optimise: Some(optimise), ..self }
     }
 
-    /// Tells `watcher` how far the build of the tree is, from 0 to 1, every few thousand primitives and from several
-    /// threads, and goes on as it answers. Optimisation and layout follow, unseen.
+    /// Tells `watcher` how far the build of the tree is, from 0 to 1, every few thousand primitives at the most and from
+    /// several threads, and goes on as it answers. Optimisation asks on, at 1; the layout, which follows, does not.
     ///
     /// ```
     /// use bvhkit::{Bvh, BuildError, Pace, Sphere};
@@ -202,8 +202,8 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         Self { watcher: Some(Watcher(Arc::new(watcher))), ..self }
     }
 
-    /// After this time the build of the tree hurries: see [`Pace::Hurry`]. The rest takes about as long as half a build
-    /// with [`Quality::Fast`]; a valid tree is always the result.
+    /// This long after `build` is called it hurries: see [`Pace::Hurry`]. A valid tree is always the result, and no less
+    /// time is taken for it than a build with [`Quality::Fast`] takes without its optimisation.
     ///
     /// ```
     /// use bvhkit::{Bvh, Ray, Sphere};
@@ -242,23 +242,31 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
             Some(set) => Backend::of(set).ok_or(BuildError::NoInstructionSet(set))?,
             None => Backend::best(),
         };
+        let pace = self.pace();
         let primitives = collect(primitives.into_iter())?;
         let (layout, skipped) =
-            in_pool(self.threads, || self.lay_out(&primitives)).map_err(BuildError::ThreadPool)??;
+            in_pool(self.threads, || self.lay_out(&primitives, &pace)).map_err(BuildError::ThreadPool)??;
+        drop(pace);
         Ok(Bvh::from_parts(layout, backend, primitives, skipped))
     }
 
     /// The layout, and the indices of skipped primitives.
-    fn lay_out(&self, primitives: &[P]) -> Result<(L, Vec<u32>), BuildError> {
+    fn lay_out(
+        &self,
+        primitives: &[P],
+        pace: &(dyn Fn(f64) -> Pace + Sync),
+    ) -> Result<(L, Vec<u32>), BuildError> {
         let References { valid, skipped } = self.references(primitives)?;
         let block_size = L::BLOCK_SIZE;
         let max_leaf_size = self.max_leaf_size.unwrap_or(block_size.max(4));
         let rules = Rules { heuristic: &self.heuristic, max_leaf_size, block_size };
-        let pace = self.pace();
-        let watch = Watch::new(&pace, primitives.len());
+        let watch = Watch::new(pace, valid.len());
         let mut tree = build_tree(valid, &rules, &watch).ok_or(BuildError::Stopped)?;
-        if let (Some(optimise), Pace::Steady) = (&self.optimise, watch.pace()) {
-            tree.optimise(optimise);
+        if let Some(optimise) = self.optimise.or_else(|| self.heuristic.optimise()) {
+            optimise.run(&mut tree, || watch.ask() == Pace::Steady);
+        }
+        if watch.ask() == Pace::Stop {
+            return Err(BuildError::Stopped);
         }
         let layout = L::lay_out(tree, primitives).ok_or(BuildError::TooLarge)?;
         Ok((layout, skipped))

@@ -29,6 +29,7 @@ pub struct Ray<S = f32> {
 
 /// Why a ray hits nothing, whatever the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RayError {
     /// A coordinate of the origin is NaN or infinite.
     Origin,

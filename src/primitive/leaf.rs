@@ -23,7 +23,7 @@ pub trait Leaf<S: Scalar, T: Copy>: 'static {
 
     /// The lanes whose primitives the ray may hit at a t up to `limit`: all that
     /// [`Intersect::intersect`](crate::Intersect::intersect) says are hit, and as few others as is quickly found. Lanes
-    /// without a primitive hold NaN.
+    /// without a primitive hold NaN; what is said of them does not count.
     fn candidates<L: Lanes<S>>(operands: &Operands<'_, S, L>, ray: &PreparedRay<S>, limit: S) -> L::Mask;
 
     /// Whether [`test`](Self::test) settles most lanes, and is not only what [`candidates`](Self::candidates) says.

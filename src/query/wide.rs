@@ -196,7 +196,11 @@ fn leaf<P: Intersect, V: Visitor<P>, R: Recorder, I: Simd, F: Form<P::Scalar, N>
         return flow;
     }
     while unsure != 0 {
-        visitor.primitive(indices[next_lane(&mut unsure) % LEAF_WIDTH], prepared)?;
+        let lane = next_lane(&mut unsure) % LEAF_WIDTH;
+        // The lanes of a user's leaf may be any.
+        if F::has(leaf, lane, indices[lane]) {
+            visitor.primitive(indices[lane], prepared)?;
+        }
     }
     ControlFlow::Continue(())
 }

@@ -22,7 +22,7 @@ pub enum InstructionSet {
 
 impl InstructionSet {
     /// All, from the least to the best.
-    pub const ALL: [Self; 4] = [Self::Portable, Self::Baseline, Self::Avx2, Self::Avx512];
+    pub const ALL: &[Self] = &[Self::Portable, Self::Baseline, Self::Avx2, Self::Avx512];
 
     /// The best that this processor has. Without the feature `std` it cannot be asked, and this is what the
     /// build's target has.
@@ -33,7 +33,7 @@ impl InstructionSet {
     /// Those that this processor has and this build contains, from the least to the best. `Portable` is in builds for
     /// targets without vectors, and in this crate's tests.
     pub fn available() -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter().filter(|&set| Backend::of(set).is_some())
+        Self::ALL.iter().copied().filter(|&set| Backend::of(set).is_some())
     }
 }
 
@@ -83,7 +83,7 @@ pub(crate) trait Kernel {
 
 impl Backend {
     pub fn best() -> Self {
-        let best = InstructionSet::ALL.into_iter().rev().find_map(Self::of);
+        let best = InstructionSet::ALL.iter().copied().rev().find_map(Self::of);
         best.expect("every target has a baseline or the portable path")
     }
 

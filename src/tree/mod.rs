@@ -119,7 +119,7 @@ impl<S: Scalar> Tree<S> {
     /// # Ok::<(), bvhkit::BuildError>(())
     /// ```
     pub fn optimise(&mut self, optimise: &Optimise) -> Gain {
-        optimise.run(self)
+        optimise.run(self, || true)
     }
 
     /// Its shape and estimated cost.

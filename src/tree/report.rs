@@ -7,6 +7,7 @@ use core::fmt;
 
 /// The shape and the estimated cost of a hierarchy.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct TreeReport {
     /// Primitives in leaves.
     pub primitives: usize,
@@ -33,6 +34,7 @@ pub struct TreeReport {
 
 /// The number of primitives per leaf.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct LeafSizes {
     /// In the smallest leaf; 0 for an empty tree.
     pub min: usize,

@@ -22,10 +22,12 @@ pub use binned_sah::BinnedSah;
 pub use median::Median;
 pub use midpoint::Midpoint;
 pub use morton::Morton;
+pub(super) use morton::codes;
 pub use sah::SahCost;
 pub use spatial_sah::SpatialSah;
 pub use sweep_sah::SweepSah;
 
+use super::Optimise;
 use super::reference::{PrimRef, centroids};
 use crate::geometry::{Aabb, Axis, Scalar};
 use alloc::vec::Vec;
@@ -76,6 +78,11 @@ pub trait Heuristic<S: Scalar>: Sync {
         None
     }
 
+    /// What follows the build, unless [`Builder::optimise`](crate::Builder::optimise) says otherwise: nothing.
+    fn optimise(&self) -> Option<Optimise> {
+        None
+    }
+
     /// How many more references than primitives there may be, by [`Split::Spatial`]: memory for them is asked for at once.
     fn spare(&self, _primitives: usize) -> usize {
         0
@@ -91,6 +98,10 @@ impl<S: Scalar, H: Heuristic<S> + ?Sized> Heuristic<S> for &H {
         (**self).codes(references, scene)
     }
 
+    fn optimise(&self) -> Option<Optimise> {
+        (**self).optimise()
+    }
+
     fn spare(&self, primitives: usize) -> usize {
         (**self).spare(primitives)
     }
@@ -101,7 +112,7 @@ impl<S: Scalar, H: Heuristic<S> + ?Sized> Heuristic<S> for &H {
 pub struct BuildNode<'a, S = f32> {
     /// The box around its primitives.
     pub aabb: Aabb<S>,
-    /// Its primitives, at least two, in no particular order.
+    /// Its primitives, at least two, in no particular order. Of one that was cut, its part.
     pub references: &'a [PrimRef<S>],
     /// Its depth; the root has 0.
     pub depth: usize,
@@ -124,6 +135,7 @@ impl<S: Scalar> BuildNode<'_, S> {
 
 /// What a heuristic proposes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Split<S = f32> {
     /// No split: make a leaf.
     Leaf,

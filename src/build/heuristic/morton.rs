@@ -19,14 +19,19 @@ const BITS: u32 = 16;
 
 impl<S: Scalar> Heuristic<S> for Morton {
     fn codes(&self, references: &[PrimRef<S>], scene: &Aabb<S>) -> Option<Vec<u64>> {
-        let grid = Grid::new(scene);
-        Some(parallel::collect(references, |_, reference| grid.code(reference)))
+        Some(codes(references, scene))
     }
 
     /// Of a heuristic that asks this one but does not pass its codes on: equal halves.
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
         Median.split(node)
     }
+}
+
+/// Each reference's place on the curve through a box.
+pub(in crate::build) fn codes<S: Scalar>(references: &[PrimRef<S>], scene: &Aabb<S>) -> Vec<u64> {
+    let grid = Grid::new(scene);
+    parallel::collect(references, |_, reference| grid.code(reference))
 }
 
 /// Cells in a box.

@@ -19,8 +19,14 @@ pub struct SpatialSah {
     pub planes: BinnedSah,
     /// Which part of the scene's area the sides of the best such plane must have in common for a cut to be tried.
     pub overlap: f64,
-    /// How many more references than primitives there may be, in parts of their number: bounds the memory.
+    /// How many more references than primitives there may be, in parts of their number, from 0 to
+    /// [`MAX_GROWTH`](Self::MAX_GROWTH): bounds the memory, of which there is as much from the start.
     pub growth: f64,
+}
+
+impl SpatialSah {
+    /// The largest growth; more is taken for as much.
+    pub const MAX_GROWTH: f64 = 4.0;
 }
 
 impl Default for SpatialSah {
@@ -47,7 +53,8 @@ impl<S: Scalar> Heuristic<S> for SpatialSah {
         let least = self.overlap * node.scene.scaled_half_area(scale).to_f64();
         if node.spare > 0 && plane.is_none_or(|plane| plane.overlap.to_f64() > least) {
             for axis in Axis::ALL {
-                if let Some((position, cost)) = Slices::of(node, axis).best(node, scale)
+                if let Some((position, cost)) =
+                    Slices::of(node, axis).and_then(|slices| slices.best(node, scale))
                     && cost < weighted_area
                 {
                     (split, weighted_area) = (Split::Spatial { axis, position }, cost);
@@ -58,7 +65,7 @@ impl<S: Scalar> Heuristic<S> for SpatialSah {
     }
 
     fn spare(&self, primitives: usize) -> usize {
-        (primitives as f64 * self.growth.max(0.0)) as usize
+        (primitives as f64 * self.growth.clamp(0.0, Self::MAX_GROWTH)) as usize
     }
 }
 
@@ -73,7 +80,8 @@ struct Slices<S> {
 }
 
 impl<S: Scalar> Slices<S> {
-    fn of(node: &BuildNode<'_, S>, axis: Axis) -> Self {
+    /// None if no plane between them may pay.
+    fn of(node: &BuildNode<'_, S>, axis: Axis) -> Option<Self> {
         let i = axis.index();
         let (origin, extent) = (node.aabb.min[i], node.aabb.extent()[i]);
         let width = extent / S::from_count(SLICES as i32);
@@ -86,15 +94,21 @@ impl<S: Scalar> Slices<S> {
             planes: core::array::from_fn(|slice| origin + width * S::from_count(slice as i32)),
         };
         if !per_unit.is_finite() {
-            return slices;
+            return None;
         }
-        let slice_of = |x: S| ((x - origin) * per_unit).to_f64() as usize;
+        let slice_of = |x: S| (((x - origin) * per_unit).to_f64() as usize).min(SLICES - 1);
+        let slices_of = |aabb: &Aabb<S>| (slice_of(aabb.min[i]), slice_of(aabb.max[i]));
         for reference in node.references {
-            let mut rest = reference.aabb;
-            let first = slice_of(rest.min[i]).min(SLICES - 1);
-            let last = slice_of(rest.max[i]).clamp(first, SLICES - 1);
+            let (first, last) = slices_of(&reference.aabb);
             slices.begin[first] += 1;
             slices.end[last] += 1;
+        }
+        if !slices.may_pay(node.references.len()) {
+            return None;
+        }
+        for reference in node.references {
+            let mut rest = reference.aabb;
+            let (first, last) = slices_of(&rest);
             for slice in first..last {
                 let [left, right] = halves(&rest, axis, slices.planes[slice + 1]);
                 slices.boxes[slice] = slices.boxes[slice].union(left.unwrap_or(Aabb::EMPTY));
@@ -102,7 +116,18 @@ impl<S: Scalar> Slices<S> {
             }
             slices.boxes[last] = slices.boxes[last].union(rest);
         }
-        slices
+        Some(slices)
+    }
+
+    /// Whether any plane has something on both sides and cuts no more than half of the references. In a heap of large
+    /// primitives none does, and computing the boxes, which takes most of the time, would be for nothing at every node.
+    fn may_pay(&self, references: usize) -> bool {
+        let (mut begun, mut ended) = (0, 0);
+        (1..SLICES).any(|slice| {
+            begun += self.begin[slice - 1];
+            ended += self.end[slice - 1];
+            begun > 0 && ended < references && begun - ended <= references / 2
+        })
     }
 
     /// The cheapest plane with references on both sides for which there is room, and its cost.

@@ -34,6 +34,11 @@ pub struct Optimise {
     pub rounds: usize,
 }
 
+impl Optimise {
+    /// Nothing at all: the tree as it was built.
+    pub const NONE: Self = Self { share: 0.0, rounds: 0 };
+}
+
 impl Default for Optimise {
     fn default() -> Self {
         Self { share: 0.01, rounds: 8 }
@@ -52,14 +57,14 @@ pub struct Gain {
 }
 
 impl Optimise {
-    /// The tree, made better.
-    pub(crate) fn run<S: Scalar>(&self, tree: &mut Tree<S>) -> Gain {
+    /// The tree, made better for as long as `goes_on` says so.
+    pub(crate) fn run<S: Scalar>(&self, tree: &mut Tree<S>, goes_on: impl Fn() -> bool + Sync) -> Gain {
         let Some(mut linked) = Linked::new(tree) else { return Gain::default() };
         let before = linked.cost();
         let count = (linked.len() as f64 * self.share.clamp(0.0, 1.0)) as usize;
         let mut moves = 0;
         for _ in 0..self.rounds {
-            let done = round(&mut linked, count);
+            let done = round(&mut linked, count, &goes_on);
             moves += done;
             if done == 0 {
                 break;
@@ -73,10 +78,13 @@ impl Optimise {
 }
 
 /// Takes out the `count` largest nodes and puts them where they cost least. Tells how many were moved.
-fn round<S: Scalar>(linked: &mut Linked<S>, count: usize) -> usize {
+fn round<S: Scalar>(linked: &mut Linked<S>, count: usize, goes_on: &(impl Fn() -> bool + Sync)) -> usize {
     let candidates = largest(linked, count);
     let chunks = candidates.chunks(64).collect();
     let mut found: Vec<Move<S>> = parallel::map(chunks, |chunk: &[u32]| {
+        if !goes_on() {
+            return Vec::new();
+        }
         let mut open = Vec::new();
         chunk.iter().filter_map(|&node| search::best_move(linked, node, &mut open)).collect::<Vec<_>>()
     })

@@ -28,6 +28,7 @@ pub struct TriangleMesh<'a, S = f32> {
 
 /// Why buffers are not a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum MeshError {
     /// A corner's index is not below the number of vertices.
     IndexOutOfRange {
