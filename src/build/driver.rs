@@ -9,6 +9,7 @@
 //! the same on any number of them. Nothing recurses: neither stack depth nor time hang on a
 //! heuristic's good will.
 
+use super::clusters::Clusters;
 use super::divide::{Rules, Set};
 use super::heuristic::{Heuristic, codes};
 use super::linear;
@@ -56,21 +57,41 @@ pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
     watch: &Watch<'_>,
 ) -> Option<Tree<S>> {
     let (aabb, primitives) = (bounds(&references), references.len());
-    let whole = if references.is_empty() {
-        Subtree::with_capacity(0, 0)
-    } else {
-        match rules.heuristic.codes(&references, &aabb) {
-            Some(codes) if codes.len() == primitives => {
-                linear::build(&references, &codes, 0, rules.max_leaf_size, watch)
-            }
-            _ => build_by_splits(references, aabb, rules, watch),
-        }
-    };
+    let whole = build_whole(references, aabb, rules, watch);
     if watch.ask() == Pace::Stop {
         return None;
     }
     let Subtree { nodes, root, indices } = whole;
     Some(Tree { nodes, root, aabb, indices, primitives })
+}
+
+/// As the heuristic wants it: by codes, by splits of clusters, or by splits.
+fn build_whole<S: Scalar, H: Heuristic<S> + ?Sized>(
+    references: Vec<PrimRef<S>>,
+    aabb: Aabb<S>,
+    rules: &Rules<'_, H>,
+    watch: &Watch<'_>,
+) -> Subtree<S> {
+    if references.is_empty() {
+        return Subtree::with_capacity(0, 0);
+    }
+    watch.begin(references.len());
+    let codes = rules.heuristic.codes(&references, &aabb);
+    if let Some(codes) = codes.filter(|codes| codes.len() == references.len()) {
+        return linear::build(&references, &codes, 0, rules.max_leaf_size, watch);
+    }
+    let size = rules.heuristic.cluster_size(rules.block_size).min(rules.max_leaf_size);
+    if size < 2 {
+        return build_by_splits(references, aabb, rules, watch);
+    }
+    let (clusters, references) = Clusters::of(&references, &aabb, size);
+    watch.begin(references.len());
+    let rules = Rules {
+        heuristic: rules.heuristic,
+        max_leaf_size: rules.max_leaf_size / size,
+        block_size: (rules.block_size / size).max(1),
+    };
+    clusters.opened(build_by_splits(references, aabb, &rules, watch))
 }
 
 /// Asks the heuristic to split every node.

@@ -1,32 +1,26 @@
 //! The build without splits: references are sorted by codes along a curve, and the tree follows the codes' bits.
 //!
 //! ```text
-//! codes -> keys (code, place: all different) -> sorted -> top, split where the highest bit changes, down to tasks
-//!       -> tasks, each in one pass from the leaves up -> joined
+//! codes -> curve -> top, split where the highest bit changes, down to tasks -> tasks, each in one pass from the leaves up
+//!       -> joined
 //! ```
 //!
 //! No path is longer than a key has bits, of which there are [`MAX_DEPTH`](crate::MAX_DEPTH) at the most: each step down
 //! settles one.
 
-use super::radix::sorted;
+use super::curve::{Curve, difference};
 use super::reference::{PrimRef, bounds};
-use super::subtree::{Parent, Subtree, join, task_child, task_of};
+use super::subtree::{Subtree, join, task_of};
 use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
 use crate::simd::prefetch;
 use crate::tree::{Child, MAX_DEPTH, Node};
-use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// References in a task at the most.
-const TASK_SIZE: usize = 4096;
-
 /// References lie in the input's order: how many before one's turn it is asked for.
 const AHEAD: usize = 32;
-
-const _: () = assert!(MAX_DEPTH <= u64::BITS as usize);
 
 /// The subtree over references, as many as there are codes, and at least one; `depth` is its root's, of which and of their
 /// number [`Set::divide`](super::divide::Set::divide) has the invariant.
@@ -37,21 +31,15 @@ pub(super) fn build<S: Scalar>(
     max_leaf_size: usize,
     watch: &Watch<'_>,
 ) -> Subtree<S> {
-    let place_bits = usize::BITS - (references.len() - 1).leading_zeros();
-    let code_bits = u64::BITS - codes.iter().fold(0, |all, code| all | code).leading_zeros();
-    // Codes lose their lowest bits if they have too many.
-    let lost = (code_bits + place_bits).saturating_sub((MAX_DEPTH - depth) as u32);
-    let keys =
-        parallel::collect(codes, |place, code| (code >> lost).unbounded_shl(place_bits) | place as u64);
-    let keys = sorted(keys, place_bits, place_bits + code_bits - lost);
-    let (mut top, tasks) = build_top(&keys);
-    let order = Order { references, place: (1 << place_bits) - 1, max_leaf_size };
+    let curve = Curve::new(codes, MAX_DEPTH - depth);
+    let (mut top, tasks) = curve.divide();
+    let order = Order { references, curve: &curve, max_leaf_size };
     let built = parallel::map(tasks, |task: Range<usize>| {
         if watch.ask() == Pace::Stop {
             return (Subtree::with_capacity(0, 0), Aabb::EMPTY);
         }
         watch.place(task.len());
-        order.build(&keys[task])
+        order.build(&curve.keys[task])
     });
     let (subtrees, boxes): (Vec<_>, Vec<_>) = built.into_iter().unzip();
     // Children lie behind their parents.
@@ -66,31 +54,10 @@ pub(super) fn build<S: Scalar>(
     join(top, &subtrees)
 }
 
-/// The nodes of more than [`TASK_SIZE`] keys, without their boxes, and the tasks below them.
-fn build_top<S: Scalar>(keys: &[u64]) -> (Subtree<S>, Vec<Range<usize>>) {
-    let (mut top, mut tasks) = (Subtree::with_capacity(0, 0), Vec::new());
-    let mut open: Vec<(Parent, Range<usize>)> = vec![(None, 0..keys.len())];
-    while let Some((parent, range)) = open.pop() {
-        let keys = &keys[range.clone()];
-        let ([first, .., last], true) = (keys, keys.len() > TASK_SIZE) else {
-            top.refer(parent, task_child(tasks.len()));
-            tasks.push(range);
-            continue;
-        };
-        let highest = (first ^ last).ilog2();
-        let border = range.start + keys.partition_point(|key| key >> highest & 1 == 0);
-        let node = top.push(parent, [Aabb::EMPTY; 2]);
-        open.push((Some((node, 1)), border..range.end));
-        open.push((Some((node, 0)), range.start..border));
-    }
-    (top, tasks)
-}
-
 /// What the keys stand for.
 struct Order<'r, S> {
     references: &'r [PrimRef<S>],
-    /// The bits of a key that are the reference's place.
-    place: u64,
+    curve: &'r Curve,
     max_leaf_size: usize,
 }
 
@@ -108,10 +75,6 @@ impl<S: Scalar> Order<'_, S> {
     /// nodes that await what is on their left lie on a stack: so nodes are made right side first and parents last,
     /// which backwards is depth first.
     fn build(&self, keys: &[u64]) -> (Subtree<S>, Aabb<S>) {
-        let difference = |border: usize| match (border, keys.get(border)) {
-            (1.., Some(key)) => key ^ keys[border - 1],
-            _ => u64::MAX,
-        };
         let mut nodes = Vec::with_capacity(keys.len() / 4);
         let mut open: Vec<Part<S>> = Vec::with_capacity(MAX_DEPTH + 1);
         for first in (0..keys.len()).rev() {
@@ -119,8 +82,8 @@ impl<S: Scalar> Order<'_, S> {
                 prefetch(core::ptr::from_ref(self.reference(&keys[ahead])).cast(), size_of::<PrimRef<S>>());
             }
             let mut part = Part { keys: first..first + 1, node: None };
-            let on_the_left = difference(first);
-            while difference(part.keys.end) < on_the_left
+            let on_the_left = difference(keys, first);
+            while difference(keys, part.keys.end) < on_the_left
                 && let Some(right) = open.pop()
             {
                 part = self.above(part, right, keys, &mut nodes);
@@ -165,6 +128,6 @@ impl<S: Scalar> Order<'_, S> {
     }
 
     fn reference(&self, key: &u64) -> &PrimRef<S> {
-        &self.references[(key & self.place) as usize]
+        &self.references[self.curve.place(*key)]
     }
 }

@@ -7,6 +7,8 @@
 //! The driver alone partitions references, bounds the depth and falls back to equal halves, so
 //! that a bad heuristic makes a slow tree, never a broken one.
 
+mod clusters;
+mod curve;
 mod cut;
 mod divide;
 mod driver;

@@ -31,16 +31,25 @@ impl fmt::Debug for Watcher {
 /// How far a build is.
 pub(crate) struct Watch<'w> {
     watcher: &'w (dyn Fn(f64) -> Pace + Sync),
-    total: usize,
+    total: AtomicUsize,
     placed: AtomicUsize,
     /// The strictest answer so far, as a number.
     pace: AtomicU8,
 }
 
 impl<'w> Watch<'w> {
-    /// Over a number of primitives.
-    pub fn new(watcher: &'w (dyn Fn(f64) -> Pace + Sync), total: usize) -> Self {
-        Self { watcher, total, placed: AtomicUsize::new(0), pace: AtomicU8::new(Pace::Steady as u8) }
+    pub fn new(watcher: &'w (dyn Fn(f64) -> Pace + Sync)) -> Self {
+        Self {
+            watcher,
+            total: AtomicUsize::new(1),
+            placed: AtomicUsize::new(0),
+            pace: AtomicU8::new(Pace::Steady as u8),
+        }
+    }
+
+    /// There are so many references.
+    pub fn begin(&self, total: usize) {
+        self.total.store(total, Relaxed);
     }
 
     /// `count` more have found their leaves.
@@ -53,7 +62,9 @@ impl<'w> Watch<'w> {
         let pace = match self.pace() {
             Pace::Stop => Pace::Stop,
             // More references than primitives may be placed.
-            _ => (self.watcher)((self.placed.load(Relaxed) as f64 / self.total as f64).min(1.0)),
+            _ => {
+                (self.watcher)((self.placed.load(Relaxed) as f64 / self.total.load(Relaxed) as f64).min(1.0))
+            }
         };
         self.pace.fetch_max(pace as u8, Relaxed);
         self.pace()

@@ -260,9 +260,10 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         let block_size = L::BLOCK_SIZE;
         let max_leaf_size = self.max_leaf_size.unwrap_or(block_size.max(4));
         let rules = Rules { heuristic: &self.heuristic, max_leaf_size, block_size };
-        let watch = Watch::new(pace, valid.len());
+        let watch = Watch::new(pace);
         let mut tree = build_tree(valid, &rules, &watch).ok_or(BuildError::Stopped)?;
-        if let Some(optimise) = self.optimise.or_else(|| self.heuristic.optimise()) {
+        let optimise = self.optimise.or_else(|| self.heuristic.optimise());
+        if let Some(optimise) = optimise.filter(|optimise| optimise.rounds > 0) {
             optimise.run(&mut tree, || watch.ask() == Pace::Steady);
         }
         if watch.ask() == Pace::Stop {

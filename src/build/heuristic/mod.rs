@@ -7,10 +7,12 @@
 //! | [`BinnedSah`] | the cheapest of some planes by the surface area heuristic | Wald 2007 |
 //! | [`SweepSah`] | the cheapest of all splits by the same | MacDonald and Booth 1990 |
 //! | [`SpatialSah`] | those of [`BinnedSah`], or a plane that cuts references in two | Stich et al. 2009 |
+//! | [`Clustered`] | as another one, clusters of neighbours in place of primitives | |
 //! | [`Morton`] | where the highest bit changes along a space-filling curve | Lauterbach et al. 2009 |
 
 mod binned_sah;
 mod bins;
+mod clustered;
 mod median;
 mod midpoint;
 mod morton;
@@ -19,6 +21,7 @@ mod spatial_sah;
 mod sweep_sah;
 
 pub use binned_sah::BinnedSah;
+pub use clustered::Clustered;
 pub use median::Median;
 pub use midpoint::Midpoint;
 pub use morton::Morton;
@@ -78,6 +81,12 @@ pub trait Heuristic<S: Scalar>: Sync {
         None
     }
 
+    /// How many neighbours are split as one, at the most, where leaves test `block_size` primitives at once: 1 for none. See
+    /// [`Clustered`].
+    fn cluster_size(&self, _block_size: usize) -> usize {
+        1
+    }
+
     /// What follows the build, unless [`Builder::optimise`](crate::Builder::optimise) says otherwise: nothing.
     fn optimise(&self) -> Option<Optimise> {
         None
@@ -98,6 +107,10 @@ impl<S: Scalar, H: Heuristic<S> + ?Sized> Heuristic<S> for &H {
         (**self).codes(references, scene)
     }
 
+    fn cluster_size(&self, block_size: usize) -> usize {
+        (**self).cluster_size(block_size)
+    }
+
     fn optimise(&self) -> Option<Optimise> {
         (**self).optimise()
     }
@@ -112,13 +125,14 @@ impl<S: Scalar, H: Heuristic<S> + ?Sized> Heuristic<S> for &H {
 pub struct BuildNode<'a, S = f32> {
     /// The box around its primitives.
     pub aabb: Aabb<S>,
-    /// Its primitives, at least two, in no particular order. Of one that was cut, its part.
+    /// Its primitives, at least two, in no particular order. Of one that was cut, its part; or, in a build of
+    /// [clusters](Heuristic::cluster_size), clusters, whose indices are numbers of their own.
     pub references: &'a [PrimRef<S>],
     /// Its depth; the root has 0.
     pub depth: usize,
-    /// The largest number of primitives for which [`Split::Leaf`] is accepted.
+    /// The largest number of references for which [`Split::Leaf`] is accepted.
     pub max_leaf_size: usize,
-    /// How many primitives a leaf tests at once: 8 where they are packed side by side, else 1.
+    /// How many references a leaf tests at once: 8 where primitives are packed side by side, else 1.
     pub block_size: usize,
     /// The box around everything.
     pub scene: Aabb<S>,
