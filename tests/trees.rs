@@ -185,7 +185,7 @@ fn a_hurry_below_a_long_path_keeps_the_depth_bound() {
 fn a_build_in_a_hurry_is_not_optimised_and_may_still_be_stopped() {
     let triangles = triangles(20_000);
     let builder = || Bvh::builder().threads(1).layout::<Tree>();
-    let plain = builder().heuristic(BinnedSah::new(16)).build(&triangles).unwrap();
+    let plain = builder().optimise(Optimise::NONE).build(&triangles).unwrap();
     let hurried = builder().watch(from(1.0, Pace::Hurry)).build(&triangles).unwrap();
     assert!(hurried.layout() == plain.layout());
     assert!(hurried.layout() != builder().build(&triangles).unwrap().layout());

@@ -129,3 +129,64 @@ fn subtrees(keys: &[u64], size: usize) -> Vec<Range<usize>> {
     let ends = starts.clone().skip(1).chain([keys.len()]);
     starts.zip(ends).map(|(start, end)| start..end).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scattered(n: usize) -> impl Iterator<Item = u64> {
+        (1..=n as u64).map(|i| i.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+    }
+
+    #[test]
+    fn subtrees_are_the_largest_of_their_size() {
+        for (n, bits) in [(1, 60), (2, 60), (500, 60), (500, 10), (3000, 14)] {
+            let mut keys: Vec<u64> = scattered(n).map(|key| key >> (64 - bits)).collect();
+            keys.sort_unstable();
+            keys.dedup();
+            for size in [1, 2, 3, 8, 5000] {
+                let mut expected = Vec::new();
+                let mut open = vec![0..keys.len()];
+                while let Some(range) = open.pop() {
+                    if range.len() <= size {
+                        expected.push(range);
+                    } else {
+                        let border = range.start + border(&keys[range.clone()]);
+                        open.extend([border..range.end, range.start..border]);
+                    }
+                }
+                assert_eq!(subtrees(&keys, size), expected, "{n} keys of {bits} bits, {size}");
+            }
+        }
+    }
+
+    /// Small boxes, and every hundredth one as large as the scene.
+    #[test]
+    fn clusters_hold_each_once_and_what_is_large_is_alone() {
+        let references: Vec<PrimRef> = (0..)
+            .zip(scattered(10_000))
+            .map(|(index, bits)| {
+                let center = [0, 20, 40].map(|shift| ((bits >> shift) & 0xfffff) as f32);
+                let half = if index % 100 == 0 { 1e5 } else { 1.0 };
+                PrimRef::new(Aabb::new(center.map(|x| x - half), center.map(|x| x + half)), index)
+            })
+            .collect();
+        let scene = bounds(&references);
+        let (clusters, all) = Clusters::of(&references, &scene, 4);
+        let mut seen = clusters.indices.clone();
+        seen.sort_unstable();
+        assert!(seen.into_iter().eq(0..10_000));
+        assert!(all.len() < 8_000 && clusters.ends.len() == all.len());
+        let mut start = 0;
+        for (cluster, &end) in all.iter().zip(&clusters.ends) {
+            let members =
+                clusters.indices[start as usize..end as usize].iter().map(|&i| &references[i as usize]);
+            assert!((1..=4).contains(&(end - start)));
+            assert_eq!(cluster.aabb, bounds(members.clone()));
+            assert!(
+                members.clone().count() == 1 || members.into_iter().all(|member| member.index % 100 != 0)
+            );
+            start = end;
+        }
+    }
+}

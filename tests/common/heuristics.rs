@@ -1,13 +1,16 @@
 //! The heuristics that every test of agreement runs through, one of them hostile.
 
 use super::hostile::Hostile;
-use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, SahCost, SpatialSah, SweepSah};
-use bvhkit::{Quality, Scalar};
+use bvhkit::Scalar;
+use bvhkit::heuristic::{
+    BinnedSah, Clustered, Heuristic, Median, Midpoint, Morton, SahCost, SpatialSah, SweepSah,
+};
 
 /// Every heuristic of the crate and [`Hostile`], with a name for messages.
 pub fn all<S: Scalar>() -> Vec<(&'static str, Box<dyn Heuristic<S>>)> {
     // A dear step and a cheap test: leaves as large as they may be.
     let lazy = SahCost { traversal: 100.0, intersection: 0.1 };
+    let cutting = SpatialSah { overlap: 0.0, growth: 2.0, ..SpatialSah::default() };
     vec![
         ("median", Box::new(Median)),
         ("midpoint", Box::new(Midpoint)),
@@ -15,8 +18,9 @@ pub fn all<S: Scalar>() -> Vec<(&'static str, Box<dyn Heuristic<S>>)> {
         ("7 bins", Box::new(BinnedSah { bins: 7, cost: lazy })),
         ("32 bins", Box::new(BinnedSah::new(32))),
         ("sweep", Box::new(SweepSah::default())),
-        ("fast", Box::new(Quality::Fast)),
-        ("spatial", Box::new(SpatialSah { overlap: 0.0, growth: 2.0, ..SpatialSah::default() })),
+        ("Morton", Box::new(Morton)),
+        ("spatial", Box::new(cutting)),
+        ("clustered", Box::new(Clustered { size: 3, heuristic: cutting })),
         ("hostile", Box::new(Hostile)),
     ]
 }
