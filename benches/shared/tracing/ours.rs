@@ -40,7 +40,7 @@ where
             Query::Closest => self.closest_hit_steps(rays),
             Query::Any => self.any_hit_steps(rays),
             Query::All => {
-                rays.iter().for_each(|ray| drop(self.hits_with(ray, &mut all_hits).count()));
+                rays.iter().for_each(|ray| self.hits_with(ray, &mut all_hits).for_each(drop));
                 all_hits
             }
         })

@@ -54,7 +54,7 @@ fn area([a, b, c]: [[f32; 3]; 3]) -> f64 {
 
 /// What part of a triangle lies in a box, told by points all over it: the centers of equal parts.
 fn share([a, b, c]: [[f32; 3]; 3], within: &Aabb) -> f64 {
-    const ROWS: usize = 60;
+    const ROWS: usize = 120;
     let is_inside = |&(i, j): &(usize, usize)| {
         let [u, v] = [i, j].map(|row| (row as f32 + 1.0 / 3.0) / ROWS as f32);
         // Of a parallelogram's points, those of the other half are turned into this one.
@@ -73,13 +73,12 @@ fn by_points<H: Outline<f32>>(
     aabb: Aabb,
     soup: &[Plain],
 ) -> (f64, Vec<usize>) {
-    let (mut sum, mut cost, mut below) = (0.0, 0.0, Vec::new());
-    let mut children = Vec::new();
+    let (mut sum, mut below, mut children) = (0.0, Vec::new(), Vec::new());
     hierarchy.open(place, |part| match part {
         Part::Child(child, place) => children.push((child.intersection(aabb), place)),
         Part::Primitive(index) => below.push(index as usize),
     });
-    cost += if children.is_empty() { below.len() as f64 } else { 1.0 };
+    let cost = if children.is_empty() { below.len() as f64 } else { 1.0 };
     for (aabb, place) in children {
         let (child, more) = by_points(hierarchy, place, aabb, soup);
         sum += child;
