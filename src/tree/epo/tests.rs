@@ -3,8 +3,8 @@ use crate::heuristic::{BuildNode, Heuristic, Median, SpatialSah, Split, SweepSah
 use crate::layout::{Outline, Part};
 use crate::parallel::in_pool;
 use crate::{
-    Axis, Builder, Bvh, CompactTree, Corners, Fast, Intersect, OnInvalid, Precise, Traverse, Tree, Triangle,
-    Watertight, WideTree,
+    Axis, Builder, Bvh, CompactTree, Corners, Fast, Intersect, OnInvalid, Precise, Primitive, Traverse, Tree,
+    Triangle, Watertight, WideTree,
 };
 use alloc::vec::Vec;
 
@@ -25,7 +25,7 @@ fn soup(n: usize) -> Vec<Plain> {
     let mut random = random();
     let mut point = move || [0.0; 3].map(|_: f32| random());
     let triangle = |i: usize| {
-        let size = if i % 10 == 0 { 0.8 } else { 0.1 };
+        let size = if i.is_multiple_of(10) { 0.8 } else { 0.1 };
         let center = point();
         let mut corner = || {
             let away = point();
@@ -85,8 +85,9 @@ fn by_points<H: Outline<f32>>(
         below.extend(more);
     }
     let others = (0..soup.len()).filter(|index| !below.contains(index));
+    let meets = |index: &usize| !soup[*index].aabb().intersection(aabb).is_empty();
     let foreign = |index: usize| share(soup[index].corners(), &aabb) * area(soup[index].corners());
-    (sum + cost * others.map(foreign).sum::<f64>(), below)
+    (sum + cost * others.filter(meets).map(foreign).sum::<f64>(), below)
 }
 
 fn agrees<L: Traverse<Plain>>(builder: Builder<Plain, impl Heuristic<f32>, L>) {
