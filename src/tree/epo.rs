@@ -14,7 +14,7 @@ struct Node {
     aabb: Aabb<f64>,
     depth: usize,
     /// The first node that is not below it.
-    end: u32,
+    end: usize,
     cost: f64,
 }
 
@@ -22,7 +22,7 @@ struct Node {
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Place {
     index: u32,
-    leaf: u32,
+    leaf: usize,
 }
 
 /// The sum over nodes of cost times area of the surface in its box, but not below it, over the area of all the surface:
@@ -63,7 +63,7 @@ pub(crate) fn epo<S: Scalar, H: Outline<S>>(
 /// `parts` has the triangle, and room for what is left of it at each depth.
 fn foreign_cost(nodes: &[Node], places: &[Place], parts: &mut [Polygon]) -> f64 {
     let (mut sum, mut number) = (0.0, 0);
-    while let Some(node) = nodes.get(number as usize) {
+    while let Some(node) = nodes.get(number) {
         let (above, below) = parts.split_at_mut(node.depth + 1);
         let part = &mut below[0];
         part.set_to_part(&above[node.depth], &node.aabb);
@@ -87,21 +87,21 @@ fn in_order<S: Scalar, H: Outline<S>>(
     let mut open: Vec<_> = hierarchy.root().map(|root| (root, hierarchy.aabb(), 0)).into_iter().collect();
     while let Some((place, aabb, depth)) = open.pop() {
         let number = nodes.len();
-        path.drain(depth..).for_each(|done| nodes[done].end = number as u32);
+        path.drain(depth..).for_each(|done| nodes[done].end = number);
         path.push(number);
         let mut primitives = 0;
         hierarchy.open(place, |part| match part {
             Part::Child(aabb, place) => open.push((place, aabb, depth + 1)),
             Part::Primitive(index) => {
                 primitives += 1;
-                places.push(Place { index, leaf: number as u32 });
+                places.push(Place { index, leaf: number });
             }
         });
         // As in the SAH cost.
         let cost = if primitives > 0 { f64::from(primitives) } else { 1.0 };
         nodes.push(Node { aabb: scaled(aabb), depth, end: 0, cost });
     }
-    let end = nodes.len() as u32;
+    let end = nodes.len();
     path.into_iter().for_each(|done| nodes[done].end = end);
     places.sort_unstable();
     (nodes, places)
