@@ -38,7 +38,8 @@
 //!   [`Counters`] on request; [`Bvh::closest_hits`] and [`Bvh::any_hits`] for many rays.
 //! - What to test it, or your own, against: [`reference`](mod@reference); with the feature `exact`,
 //!   the answer of exact arithmetic too.
-//! - What it looks like: [`Bvh::report`], [`Bvh::check`].
+//! - What it looks like: [`Bvh::report`], [`Bvh::check`]; how good it is: [`Bvh::epo`], and, by your own rays,
+//!   [`Bvh::closest_hit_steps`].
 //!
 //! # What is promised
 //!

@@ -186,6 +186,20 @@ fn counters_count_rays_nodes_leaves_and_primitives() {
 }
 
 #[test]
+fn steps_of_many_rays_are_the_sum_of_each_rays() {
+    let bvh = Bvh::builder().layout::<Tree>().heuristic(Median).max_leaf_size(2).build(row(4)).unwrap();
+    let nowhere = Ray::new([0.0; 3], [0.0; 3]);
+    let rays = [along_the_row(), nowhere, Ray::new([-5.0, 9.0, 0.0], [1.0, 0.0, 0.0])];
+    let [closest, any] = [bvh.closest_hit_steps(&rays), bvh.any_hit_steps(&rays)];
+    // An invalid ray counts nowhere.
+    assert_eq!(closest, Counters { rays: 2, nodes: 1, leaves: 1, primitives: 2 });
+    assert_eq!(any, Counters { rays: 2, nodes: 1, leaves: 1, primitives: 1 });
+    let means = |steps: Counters| [steps.nodes_per_ray(), steps.leaves_per_ray(), steps.primitives_per_ray()];
+    assert_eq!(means(closest), [0.5, 0.5, 1.0]);
+    assert_eq!(means(bvh.any_hit_steps(&[nowhere])), [0.0; 3]);
+}
+
+#[test]
 fn what_lies_outside_the_interval_is_not_visited() {
     let bvh = Bvh::builder().layout::<Tree>().max_leaf_size(1).build(row(1000)).unwrap();
     // From the gap between two spheres into that gap: half of the row behind, half of it beyond.

@@ -49,6 +49,8 @@ pub trait Hierarchy {
 pub struct Statistics {
     /// As [`bvhkit::TreeReport`] defines it.
     pub sah_cost: Option<f64>,
+    /// As [`bvhkit::Bvh::epo`] defines it.
+    pub epo: Option<f64>,
     pub max_depth: Option<usize>,
     pub nodes_per_ray: Option<f64>,
     pub tests_per_ray: Option<f64>,

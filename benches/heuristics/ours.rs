@@ -3,7 +3,7 @@
 use crate::hierarchy::{Build, Hierarchy, Method, Statistics};
 use crate::shared::agreement::{Hit, bare};
 use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, Morton, SpatialSah, SweepSah};
-use bvhkit::{Bvh, Counters, Optimise, Quality, Ray, Triangle};
+use bvhkit::{Bvh, Optimise, Quality, Ray, Triangle};
 
 pub fn methods() -> [Method; 9] {
     [
@@ -50,17 +50,14 @@ impl Hierarchy for Bvh<Triangle> {
     }
 
     fn statistics(&self, rays: &[Ray]) -> Statistics {
-        let mut counters = Counters::default();
-        for ray in rays {
-            self.closest_hit_with(ray, &mut counters);
-        }
+        let steps = self.closest_hit_steps(rays);
         let report = self.report();
-        let per_ray = |count: u64| Some(count as f64 / rays.len() as f64);
         Statistics {
             sah_cost: Some(report.sah_cost),
+            epo: Some(self.epo()),
             max_depth: Some(report.max_depth),
-            nodes_per_ray: per_ray(counters.nodes),
-            tests_per_ray: per_ray(counters.primitives),
+            nodes_per_ray: Some(steps.nodes_per_ray()),
+            tests_per_ray: Some(steps.primitives_per_ray()),
         }
     }
 }

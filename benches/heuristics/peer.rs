@@ -53,7 +53,7 @@ impl<B: Shape> Hierarchy for Peer<B> {
         }
         let (sah_cost, max_depth) = self.bvh.shape().unzip();
         let tests_per_ray = Some(tests.get() as f64 / rays.len() as f64);
-        Statistics { sah_cost, max_depth, nodes_per_ray: None, tests_per_ray }
+        Statistics { sah_cost, epo: None, max_depth, nodes_per_ray: None, tests_per_ray }
     }
 }
 

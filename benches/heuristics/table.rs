@@ -7,11 +7,12 @@ use crate::shared::columns::{decimal, table};
 use crate::shared::timing::{interleaved, mega_rays};
 use crate::workload::Workload;
 
-const HEADER: [&str; 14] = [
+const HEADER: [&str; 15] = [
     "scene",
     "method",
     "build\nms",
     "SAH\ncost",
+    "EPO",
     "depth",
     "nodes\nper ray",
     "tests\nper ray",
@@ -27,7 +28,8 @@ const HEADER: [&str; 14] = [
 const LEGEND: &str = "\
 One thread; medians of times, methods taking turns. Builds include putting the triangles in the tree's order.
 Closest: primary, diffuse and random rays. Any: shadow rays. Nodes and tests: per closest hit.
-SAH cost: 1 for the step through an inner node, 1 for the test of a triangle.
+SAH cost: 1 for the step through an inner node, 1 for the test of a triangle. EPO, end-point overlap: the mean cost, in the
+same unit, of nodes around a point of the surface that do not have it below them.
 Differ from naive: of a sample, the rays that hit where the naive reference says miss, miss where it says hit,
 or hit another triangle. Ours are equal to it in the bits of t and in the index, or there is no table.
 Then, of all rays, those that differ from ours, which all agree: by hit or miss, by another triangle, by
@@ -65,12 +67,14 @@ fn rows(workload: &Workload, methods: &[Method], repetitions: usize) -> Vec<Vec<
 
     let mut facts = facts.into_iter();
     let row = |i: usize| {
-        let Statistics { sah_cost, max_depth, nodes_per_ray, tests_per_ray } = built[i].statistics(closest);
+        let Statistics { sah_cost, epo, max_depth, nodes_per_ray, tests_per_ray } =
+            built[i].statistics(closest);
         let mut row = vec![
             facts.next().unwrap_or_default(),
             methods[i].name.into(),
             format!("{:.1}", build_times[i].as_secs_f64() * 1e3),
             decimal(sah_cost, 1),
+            decimal(epo, 2),
             max_depth.map_or("-".into(), |depth| depth.to_string()),
             decimal(nodes_per_ray, 1),
             decimal(tests_per_ray, 1),

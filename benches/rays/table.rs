@@ -85,15 +85,13 @@ pub fn add(
 
 fn counts(kind: &Kind, member: &Member, check: &Check, differ: usize) -> [String; COUNTS.len()] {
     let steps = member.tracer.steps(kind.query, &kind.natural);
-    let per_ray = |count: fn(Counters) -> u64| {
-        decimal(steps.map(|steps| count(steps) as f64 / kind.natural.len() as f64), 2)
-    };
+    let per_ray = |mean: fn(&Counters) -> f64| decimal(steps.as_ref().map(mean), 2);
     let bytes = member.tracer.bytes();
     [
         decimal(Some(100.0 * check.hit), 0),
-        per_ray(|steps| steps.nodes),
-        per_ray(|steps| steps.leaves),
-        per_ray(|steps| steps.primitives),
+        per_ray(Counters::nodes_per_ray),
+        per_ray(Counters::leaves_per_ray),
+        per_ray(Counters::primitives_per_ray),
         decimal(bytes.map(|[tree, _]| tree), 1),
         decimal(bytes.map(|[_, all]| all), 1),
         format!("{differ} of {}", check.sample),

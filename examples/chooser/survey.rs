@@ -38,6 +38,7 @@ pub struct Finding {
     pub sort: Sort,
     pub build_ms: f64,
     pub sah_cost: Option<f64>,
+    pub epo: Option<f64>,
     /// Bytes for each triangle, of the hierarchy and of the triangles.
     pub bytes: Option<f64>,
     /// Nodes, leaves and tests for each ray, over all kinds.
@@ -56,7 +57,7 @@ impl Survey {
     pub fn new(scene: &NamedScene, rays: usize) -> Self {
         let ways = ways::all(&scene.triangles);
         let built: Vec<_> = ways.iter().map(|way| (way.build)()).collect();
-        let sah_costs: Vec<_> = built.iter().map(|built| built.sah_cost()).collect();
+        let costs: Vec<_> = built.iter().map(|built| (built.sah_cost(), built.epo())).collect();
         let members = ways.iter().zip(built).map(|(way, tracer)| Member {
             name: way.name.clone(),
             ours: way.sort != Sort::Peer,
@@ -83,7 +84,8 @@ impl Survey {
                 name: way.name,
                 sort: way.sort,
                 build_ms: 1e3 * fastest(i),
-                sah_cost: sah_costs[i],
+                sah_cost: costs[i].0,
+                epo: costs[i].1,
                 bytes: tracer.bytes().map(|[_, all]| all),
                 steps: steps(tracer, &family.kinds),
                 geometric_mean: geometric_mean(&rates),
@@ -117,7 +119,7 @@ fn steps(tracer: &dyn Tracer, kinds: &[Kind]) -> Option<[f64; 3]> {
         debug_assert!(*query != Query::All);
         all += tracer.steps(*query, natural)?;
     }
-    Some([all.nodes, all.leaves, all.primitives].map(|count| count as f64 / all.rays as f64))
+    Some([all.nodes_per_ray(), all.leaves_per_ray(), all.primitives_per_ray()])
 }
 
 fn geometric_mean(rates: &[f64]) -> f64 {

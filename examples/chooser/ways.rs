@@ -29,6 +29,9 @@ pub enum Sort {
 pub trait Built: Tracer {
     /// As [`bvhkit::TreeReport`] defines it; none if nodes have another number of children, so that it would not compare.
     fn sah_cost(&self) -> Option<f64>;
+
+    /// As [`Bvh::epo`] defines it; none likewise.
+    fn epo(&self) -> Option<f64>;
 }
 
 pub fn all(triangles: &[Triangle]) -> Vec<Way<'_>> {
@@ -78,6 +81,10 @@ impl Built for Bvh<Triangle> {
     fn sah_cost(&self) -> Option<f64> {
         Some(self.report().sah_cost)
     }
+
+    fn epo(&self) -> Option<f64> {
+        Some(self.epo())
+    }
 }
 
 /// `obvhs` by its presets.
@@ -112,6 +119,10 @@ where
     Self: Tracer,
 {
     fn sah_cost(&self) -> Option<f64> {
+        None
+    }
+
+    fn epo(&self) -> Option<f64> {
         None
     }
 }

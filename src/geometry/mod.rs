@@ -2,6 +2,7 @@
 
 mod aabb;
 mod axis;
+mod polygon;
 mod prepared;
 mod ray;
 mod scalar;
@@ -10,6 +11,7 @@ mod slabs;
 
 pub use aabb::Aabb;
 pub use axis::Axis;
+pub(crate) use polygon::Polygon;
 pub use prepared::PreparedRay;
 pub use ray::{Ray, RayError};
 pub use scalar::Scalar;

@@ -39,7 +39,8 @@ impl<R: Recorder + ?Sized> Recorder for &mut R {
     }
 }
 
-/// Counts of rays and of what they visited.
+/// Counts of rays and of what they visited; of many rays at once by [`Bvh::closest_hit_steps`](crate::Bvh::closest_hit_steps)
+/// and [`Bvh::any_hit_steps`](crate::Bvh::any_hit_steps).
 ///
 /// ```
 /// use bvhkit::{Bvh, Counters, Ray, Sphere};
@@ -60,6 +61,27 @@ pub struct Counters {
     pub leaves: u64,
     /// Primitives tested.
     pub primitives: u64,
+}
+
+impl Counters {
+    /// The mean number of inner nodes visited; 0 without rays.
+    pub fn nodes_per_ray(&self) -> f64 {
+        self.per_ray(self.nodes)
+    }
+
+    /// The mean number of leaves visited; 0 without rays.
+    pub fn leaves_per_ray(&self) -> f64 {
+        self.per_ray(self.leaves)
+    }
+
+    /// The mean number of primitives tested; 0 without rays.
+    pub fn primitives_per_ray(&self) -> f64 {
+        self.per_ray(self.primitives)
+    }
+
+    fn per_ray(&self, count: u64) -> f64 {
+        count as f64 / self.rays.max(1) as f64
+    }
 }
 
 impl Recorder for Counters {

@@ -1,10 +1,12 @@
 //! The binary tree: nodes and indices, never primitives.
 
 mod check;
+mod epo;
 mod report;
 
 pub use check::InvariantError;
 pub(crate) use check::check;
+pub(crate) use epo::epo;
 pub use report::{LeafSizes, TreeReport};
 
 use crate::build::{Gain, Optimise};

@@ -35,15 +35,15 @@ where
     }
 
     fn steps(&self, query: Query, rays: &[Ray]) -> Option<Counters> {
-        let mut counters = Counters::default();
-        for ray in rays {
-            match query {
-                Query::Closest => drop(self.closest_hit_with(ray, &mut counters)),
-                Query::Any => drop(self.any_hit_with(ray, &mut counters)),
-                Query::All => drop(self.hits_with(ray, &mut counters).count()),
+        let mut all_hits = Counters::default();
+        Some(match query {
+            Query::Closest => self.closest_hit_steps(rays),
+            Query::Any => self.any_hit_steps(rays),
+            Query::All => {
+                rays.iter().for_each(|ray| self.hits_with(ray, &mut all_hits).for_each(drop));
+                all_hits
             }
-        }
-        Some(counters)
+        })
     }
 
     fn bytes(&self) -> Option<[f64; 2]> {

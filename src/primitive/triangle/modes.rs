@@ -68,6 +68,15 @@ fn padded<S: Scalar>(corners: [[S; 3]; 3]) -> Aabb<S> {
     if own.is_valid() { bounds(corners) } else { own }
 }
 
+impl<P: Corners> Corners for Fast<P> {
+    type Scalar = P::Scalar;
+
+    #[inline(always)]
+    fn corners(&self) -> [[P::Scalar; 3]; 3] {
+        self.0.corners()
+    }
+}
+
 impl<P: Corners> Primitive for Fast<P> {
     type Scalar = P::Scalar;
 
@@ -97,6 +106,15 @@ impl<P: Corners> Intersect for Fast<P> {
     }
 }
 
+impl<P: Corners> Corners for Watertight<P> {
+    type Scalar = P::Scalar;
+
+    #[inline(always)]
+    fn corners(&self) -> [[P::Scalar; 3]; 3] {
+        self.0.corners()
+    }
+}
+
 impl<P: Corners> Primitive for Watertight<P> {
     type Scalar = P::Scalar;
 
@@ -123,6 +141,15 @@ impl<P: Corners> Intersect for Watertight<P> {
     #[inline(always)]
     fn put_operands(&self, operands: &mut [P::Scalar]) {
         operands.copy_from_slice(self.0.corners().as_flattened());
+    }
+}
+
+impl<P: Corners> Corners for Precise<P> {
+    type Scalar = P::Scalar;
+
+    #[inline(always)]
+    fn corners(&self) -> [[P::Scalar; 3]; 3] {
+        self.0.corners()
     }
 }
 
