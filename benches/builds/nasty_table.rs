@@ -9,13 +9,15 @@ use std::cell::Cell;
 
 /// Longer over the soup than this is told.
 const LIMIT: f64 = 3.0;
+/// No more, for some take long.
+const REPETITIONS: usize = 3;
 
 pub fn print(extent: &Extent, pools: &Pools, methods: &[Method]) {
     let lists = nasty::all(extent.nasty).into_iter();
     let scenes: Vec<Scene> = lists.map(|(name, triangles)| Scene::new(name, triangles, extent)).collect();
     let facts = |scene: &Scene| methods.iter().map(|method| scene.facts(method, pools)).collect();
     let facts: Vec<Vec<Facts>> = scenes.iter().map(facts).collect();
-    let repetitions = extent.repetitions(extent.nasty);
+    let repetitions = extent.repetitions(extent.nasty).min(REPETITIONS);
     let times: Vec<_> = methods.iter().map(|method| times(method, &scenes, pools, repetitions)).collect();
 
     let grid = |cell: &dyn Fn(usize, usize) -> String| {
