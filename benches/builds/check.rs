@@ -9,8 +9,8 @@ use glam::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// More would tell no more.
-const MAX_RAYS: usize = 256;
+/// Few: where all triangles overlap, each ray of a tree meets them all.
+const MAX_RAYS: usize = 32;
 
 /// Triangles, and rays with the naive reference's answers.
 pub struct Scene {
