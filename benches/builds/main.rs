@@ -2,7 +2,7 @@
 //!
 //! `cargo bench --bench builds` prints tables in Markdown. No time is printed before the tree was checked, and its answers
 //! compared with the naive reference's. The environment variable `BVHKIT_TRIANGLES` is the largest number of triangles,
-//! ten million unless set, which takes an hour and 3 GB; `RAYON_NUM_THREADS` tells how many threads all are.
+//! ten million unless set; `RAYON_NUM_THREADS` tells how many threads all are.
 
 mod check;
 mod first;
