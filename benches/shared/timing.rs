@@ -37,7 +37,8 @@ pub fn turns<T>(
     durations
 }
 
-fn median(mut durations: Vec<Duration>) -> Duration {
+/// Of an even number, the later of the two in the middle.
+pub fn median(mut durations: Vec<Duration>) -> Duration {
     durations.sort_unstable();
     durations[durations.len() / 2]
 }

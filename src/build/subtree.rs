@@ -60,11 +60,11 @@ pub(super) fn task_of<S>(child: Child, top: &Subtree<S>) -> Option<usize> {
     is_task.then(|| (u32::MAX - child.first) as usize)
 }
 
-/// The top, which has no leaves, and the subtrees of its tasks as one tree, a left child the node after its parent everywhere, and slots in the
-/// order of the leaves.
+/// The top, which has no leaves, and the subtrees of its tasks as one tree, a left child the node after its parent
+/// everywhere, and slots in the order of the leaves.
 pub(super) fn join<S: Scalar>(mut top: Subtree<S>, subtrees: &[Subtree<S>]) -> Subtree<S> {
     // Which nodes and slots follow one another, and by how much those of subtrees move.
-    let (mut nodes, mut slots): (Vec<(Range<usize>, Option<usize>, Move)>, Vec<&[u32]>) = Default::default();
+    let (mut nodes, mut slots) = (Vec::<(Range<usize>, Option<usize>, Move)>::new(), Vec::<&[u32]>::new());
     let mut end = Move { node: 0, slot: 0 };
     let mut open = vec![(None, top.root)];
     while let Some((parent, child)) = open.pop() {

@@ -1,8 +1,8 @@
 //! Scenes made of nothing but a number of triangles: the same on every run and every machine.
 
 mod interior;
-mod soup;
-mod surface;
+pub mod soup;
+pub mod surface;
 
 use bvhkit::Triangle;
 use glam::Vec3;

@@ -32,12 +32,13 @@ pub fn clustered(n: usize) -> Vec<Triangle> {
         .collect()
 }
 
-fn triangle(center: Vec3, size: f32, rng: &mut Pcg32) -> Triangle {
+/// Its corners anywhere in a cube of that size.
+pub fn triangle(center: Vec3, size: f32, rng: &mut Pcg32) -> Triangle {
     let [a, b, c] = [(); 3].map(|()| center + size * (cube(rng) - 0.5));
     Triangle::new(a, b, c)
 }
 
 /// A point of the unit cube.
-fn cube(rng: &mut Pcg32) -> Vec3 {
+pub fn cube(rng: &mut Pcg32) -> Vec3 {
     Vec3::from_array(rng.random())
 }
