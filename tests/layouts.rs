@@ -48,7 +48,7 @@ const SCENES: usize = SCALES.len() * LEAF_SIZES.len();
 /// Builds with some options, compares, and tells how many layouts were.
 type Compare<P> = for<'a> fn(
     &Naive<'a, P>,
-    Builder<&'a P, &dyn Heuristic<<P as bvhkit::Primitive>::Scalar>>,
+    Builder<&'a P, &dyn Heuristic<<P as Primitive>::Scalar>>,
     fmt::Arguments<'_>,
 ) -> usize;
 

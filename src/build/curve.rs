@@ -39,6 +39,11 @@ impl Curve {
         (key & self.place) as usize
     }
 
+    /// As many keys with the same places, whose tree is one of halves.
+    pub fn in_a_row(&self, keys: &[u64]) -> Vec<u64> {
+        (0..).zip(keys).map(|(row, &key)| row << self.place.count_ones() | key & self.place).collect()
+    }
+
     /// The nodes of more than [`TASK_SIZE`] keys, without their boxes, and the keys of the tasks below them, in order.
     pub fn divide<S: Scalar>(&self) -> (Subtree<S>, Vec<Range<usize>>) {
         let (mut top, mut tasks) = (Subtree::with_capacity(0, 0), Vec::new());

@@ -4,13 +4,14 @@ use super::cut::Cut;
 use super::heuristic::{BuildNode, Heuristic, Split};
 use super::reference::{PrimRef, bounds, centroids};
 use crate::geometry::{Aabb, Axis, Scalar};
-use crate::tree::MAX_DEPTH;
 
 /// What the driver needs to divide any node.
 pub(crate) struct Rules<'h, H: ?Sized> {
     pub heuristic: &'h H,
     pub max_leaf_size: usize,
     pub block_size: usize,
+    /// [`MAX_DEPTH`](crate::MAX_DEPTH), or less where something goes below.
+    pub max_depth: usize,
 }
 
 /// A set of references in memory that has room for more.
@@ -31,8 +32,8 @@ impl<S> Set<'_, S> {
 impl<'r, S: Scalar> Set<'r, S> {
     /// Divides the set in two, or answers `Err` with itself if it is to be a leaf. `scene` is the box around everything.
     ///
-    /// The depth bound is the invariant `depth + ceil(log2(n)) <= MAX_DEPTH` of every node. It holds at
-    /// the root (at most 2^32 references, 32 <= 64); a proposed split is taken only if it holds for both
+    /// The depth bound is the invariant `depth + ceil(log2(n)) <= max_depth` of every node. It holds at
+    /// the root (at most 2^32 references, 32 <= 48); a proposed split is taken only if it holds for both
     /// sides; equal halves, which replace it otherwise, keep it, since each is one level deeper and
     /// has one binary digit less.
     pub fn divide<H: Heuristic<S> + ?Sized>(
@@ -53,7 +54,7 @@ impl<'r, S: Scalar> Set<'r, S> {
             scene: *scene,
             spare: self.memory.len() - n,
         });
-        let fits = |n: usize| n > 0 && self.depth + 1 + ceil_log2(n) <= MAX_DEPTH;
+        let fits = |n: usize| n > 0 && self.depth + 1 + ceil_log2(n) <= rules.max_depth;
         let room = self.memory.len();
         let references = &mut self.memory[..n];
         let middle = match proposal {
@@ -150,6 +151,7 @@ fn select<S: Scalar>(references: &mut [PrimRef<S>], axis: Axis, left: usize) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tree::MAX_DEPTH;
     use alloc::vec::Vec;
 
     fn references(n: u32, x: impl Fn(u32) -> f32) -> Vec<PrimRef> {
@@ -172,7 +174,8 @@ mod tests {
     fn middle(split: Split<f32>, n: u32, depth: usize) -> Option<usize> {
         let mut references = references(n, |i| (i * 7 % n) as f32);
         let aabb = bounds(&references);
-        let rules = Rules { heuristic: &Always(split), max_leaf_size: 4, block_size: 1 };
+        let rules =
+            Rules { heuristic: &Always(split), max_leaf_size: 4, block_size: 1, max_depth: MAX_DEPTH };
         let len = references.len();
         let sides = Set { memory: &mut references, len, aabb, depth }.divide(&rules, &aabb).ok()?;
         for side in &sides {

@@ -9,7 +9,7 @@
 //! the same on any number of them. Nothing recurses: neither stack depth nor time hang on a
 //! heuristic's good will.
 
-use super::clusters::Clusters;
+use super::clusters::{self, SPLIT_DEPTH};
 use super::divide::{Rules, Set};
 use super::heuristic::{Heuristic, codes};
 use super::linear;
@@ -78,20 +78,17 @@ fn build_whole<S: Scalar, H: Heuristic<S> + ?Sized>(
     watch.begin(references.len());
     let codes = rules.heuristic.codes(&references, &aabb);
     if let Some(codes) = codes.filter(|codes| codes.len() == references.len()) {
-        return linear::build(&references, &codes, 0, rules.max_leaf_size, watch);
+        return linear::build(&references, &codes, rules.max_depth, rules.max_leaf_size, watch);
     }
-    let size = rules.heuristic.cluster_size(rules.block_size).min(rules.max_leaf_size);
+    let size = rules.heuristic.cluster_size();
     if size < 2 {
         return build_by_splits(references, aabb, rules, watch);
     }
-    let (clusters, references) = Clusters::of(&references, &aabb, size);
-    watch.begin(references.len());
-    let rules = Rules {
-        heuristic: rules.heuristic,
-        max_leaf_size: rules.max_leaf_size / size,
-        block_size: (rules.block_size / size).max(1),
-    };
-    clusters.opened(build_by_splits(references, aabb, &rules, watch))
+    let below = Rules { heuristic: rules.heuristic, max_leaf_size: 1, block_size: 1, max_depth: SPLIT_DEPTH };
+    clusters::build(&references, &aabb, size, rules.max_leaf_size, watch, |clusters| {
+        watch.begin(clusters.len());
+        build_by_splits(clusters, aabb, &below, watch)
+    })
 }
 
 /// Asks the heuristic to split every node.
@@ -152,7 +149,8 @@ fn build_subtree<S: Scalar, H: Heuristic<S> + ?Sized>(
         Pace::Steady => {}
         Pace::Hurry => {
             let codes = codes(root.references(), scene);
-            return linear::build(root.references(), &codes, root.depth, rules.max_leaf_size, watch);
+            let depth = rules.max_depth - root.depth;
+            return linear::build(root.references(), &codes, depth, rules.max_leaf_size, watch);
         }
         Pace::Stop => return Subtree::with_capacity(0, 0),
     }

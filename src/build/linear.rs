@@ -22,8 +22,8 @@ use core::ops::Range;
 /// References lie in the input's order: how many before one's turn it is asked for.
 const AHEAD: usize = 32;
 
-/// The subtree over references, as many as there are codes, and at least one; `depth` is its root's, of which and of their
-/// number [`Set::divide`](super::divide::Set::divide) has the invariant.
+/// The subtree over references, as many as there are codes, and at least one, no deeper than `depth`, in which there is
+/// room for as many.
 pub(super) fn build<S: Scalar>(
     references: &[PrimRef<S>],
     codes: &[u64],
@@ -31,7 +31,7 @@ pub(super) fn build<S: Scalar>(
     max_leaf_size: usize,
     watch: &Watch<'_>,
 ) -> Subtree<S> {
-    let curve = Curve::new(codes, MAX_DEPTH - depth);
+    let curve = Curve::new(codes, depth);
     let (mut top, tasks) = curve.divide();
     let order = Order { references, curve: &curve, max_leaf_size };
     let built = parallel::map(tasks, |task: Range<usize>| {
@@ -55,10 +55,10 @@ pub(super) fn build<S: Scalar>(
 }
 
 /// What the keys stand for.
-struct Order<'r, S> {
-    references: &'r [PrimRef<S>],
-    curve: &'r Curve,
-    max_leaf_size: usize,
+pub(super) struct Order<'r, S> {
+    pub references: &'r [PrimRef<S>],
+    pub curve: &'r Curve,
+    pub max_leaf_size: usize,
 }
 
 /// Neighbouring keys below one node, or in one leaf that may still grow.
@@ -74,7 +74,7 @@ impl<S: Scalar> Order<'_, S> {
     /// A node ends where neighbouring keys differ in a higher bit than any two inside. Keys come from the right, and the
     /// nodes that await what is on their left lie on a stack: so nodes are made right side first and parents last,
     /// which backwards is depth first.
-    fn build(&self, keys: &[u64]) -> (Subtree<S>, Aabb<S>) {
+    pub fn build(&self, keys: &[u64]) -> (Subtree<S>, Aabb<S>) {
         let mut nodes = Vec::with_capacity(keys.len() / 4);
         let mut open: Vec<Part<S>> = Vec::with_capacity(MAX_DEPTH + 1);
         for first in (0..keys.len()).rev() {

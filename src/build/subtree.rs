@@ -33,6 +33,19 @@ impl<S: Scalar> Subtree<S> {
         }
     }
 
+    /// Of the longest path, in steps. Children lie behind their parents.
+    pub fn depth(&self) -> usize {
+        let mut depths = vec![0; self.nodes.len()];
+        let mut deepest = 0;
+        for (index, node) in self.nodes.iter().enumerate() {
+            deepest = deepest.max(depths[index] + 1);
+            for child in node.children.iter().filter(|child| !child.is_leaf()) {
+                depths[child.first as usize] = depths[index] + 1;
+            }
+        }
+        deepest
+    }
+
     /// Makes an inner node above children with these boxes, and tells its number.
     pub fn push(&mut self, parent: Parent, boxes: [Aabb<S>; 2]) -> usize {
         let index = self.nodes.len();

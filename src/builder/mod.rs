@@ -14,7 +14,7 @@ use crate::layout::{Layout, WideTree};
 use crate::parallel::{self, in_pool};
 use crate::primitive::Primitive;
 use crate::simd::{Backend, InstructionSet};
-use crate::tree::Tree;
+use crate::tree::{MAX_DEPTH, Tree};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::marker::PhantomData;
@@ -259,7 +259,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         let References { valid, skipped } = self.references(primitives)?;
         let block_size = L::BLOCK_SIZE;
         let max_leaf_size = self.max_leaf_size.unwrap_or(block_size.max(4));
-        let rules = Rules { heuristic: &self.heuristic, max_leaf_size, block_size };
+        let rules = Rules { heuristic: &self.heuristic, max_leaf_size, block_size, max_depth: MAX_DEPTH };
         let watch = Watch::new(pace);
         let mut tree = build_tree(valid, &rules, &watch).ok_or(BuildError::Stopped)?;
         let optimise = self.optimise.or_else(|| self.heuristic.optimise());

@@ -7,8 +7,8 @@
 //! | [`BinnedSah`] | the cheapest of some planes by the surface area heuristic | Wald 2007 |
 //! | [`SweepSah`] | the cheapest of all splits by the same | MacDonald and Booth 1990 |
 //! | [`SpatialSah`] | those of [`BinnedSah`], or a plane that cuts references in two | Stich et al. 2009 |
-//! | [`Clustered`] | as another one, clusters of neighbours in place of primitives | |
 //! | [`Morton`] | where the highest bit changes along a space-filling curve | Lauterbach et al. 2009 |
+//! | [`Clustered`] | as another one, down to clusters of neighbours along that curve | |
 
 mod binned_sah;
 mod bins;
@@ -81,9 +81,8 @@ pub trait Heuristic<S: Scalar>: Sync {
         None
     }
 
-    /// How many neighbours are split as one, at the most, where leaves test `block_size` primitives at once: 1 for none. See
-    /// [`Clustered`].
-    fn cluster_size(&self, _block_size: usize) -> usize {
+    /// How many neighbours are split as one, at the most: 1 for none. See [`Clustered`].
+    fn cluster_size(&self) -> usize {
         1
     }
 
@@ -107,8 +106,8 @@ impl<S: Scalar, H: Heuristic<S> + ?Sized> Heuristic<S> for &H {
         (**self).codes(references, scene)
     }
 
-    fn cluster_size(&self, block_size: usize) -> usize {
-        (**self).cluster_size(block_size)
+    fn cluster_size(&self) -> usize {
+        (**self).cluster_size()
     }
 
     fn optimise(&self) -> Option<Optimise> {
