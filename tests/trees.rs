@@ -5,7 +5,7 @@ mod common {
     pub mod hostile;
 }
 
-use bvhkit::heuristic::{BinnedSah, BuildNode, Heuristic, Median, Morton, SpatialSah, Split};
+use bvhkit::heuristic::{BinnedSah, BuildNode, Clustered, Heuristic, Median, Morton, SpatialSah, Split};
 use bvhkit::{
     Aabb, Axis, BuildError, Bvh, Fast, Hit, MAX_DEPTH, Optimise, Pace, PrimRef, Quality, Ray, Tree, Triangle,
     reference,
@@ -223,6 +223,35 @@ fn options_are_kept_in_any_order() {
         .build(&triangles)
         .unwrap();
     assert!(preset.layout() != plain.layout());
+}
+
+/// In each of 64 places, ever nearer to it on each axis: along the curve they hang one below the other.
+fn converging() -> Vec<Fast<Triangle>> {
+    let at = |[x, y, z]: [f32; 3]| Fast(Triangle::new([x, y, z], [x + 1e-6, y, z], [x, y + 1e-6, z]));
+    let places = (0..64u8).map(|place| [place & 3, place >> 2 & 3, place >> 4].map(|k| f32::from(k) * 0.25));
+    let near = |place: [f32; 3]| {
+        (0..39).map(move |i| {
+            let mut point = place;
+            point[i % 3] += 0.5f32.powi(3 + i as i32 / 3);
+            at(point)
+        })
+    };
+    places.flat_map(near).collect()
+}
+
+#[test]
+fn clusters_below_a_long_path_keep_the_depth_bound() {
+    let one_by_one = Stubborn(|_| Split::Count { axis: Axis::X, left: 1 });
+    let heuristic = Clustered { size: 64, heuristic: one_by_one };
+    for triangles in [triangles(30_000), converging()] {
+        let builder = || Bvh::builder().heuristic(&heuristic).max_leaf_size(1).layout::<Tree>();
+        let bvh = builder().threads(1).build(&triangles).unwrap();
+        bvh.check().unwrap();
+        let depth = bvh.report().max_depth;
+        assert!(depth > 48 && depth <= MAX_DEPTH, "{depth}");
+        assert!(bvh.layout() == builder().threads(3).build(&triangles).unwrap().layout());
+    }
+    assert_answers(&converging(), Bvh::builder().quality(Quality::Fast));
 }
 
 /// Codes of these numbers of bits, as many as references and more.

@@ -1,8 +1,8 @@
 //! The build of clusters: splits above, Morton's curve below.
 //!
 //! ```text
-//! references -> curve -> subtrees of at most so many keys, in one pass each -> those with small boxes are clusters,
-//! others are parted -> splits of clusters -> joined
+//! references -> curve -> subtrees of at most so many keys with small boxes: clusters, a tree for each in one pass
+//!            -> splits of clusters -> joined
 //! ```
 //!
 //! Most of a build's time goes into its many small nodes, most of a tree's quality into its few large ones. So the curve
@@ -16,7 +16,7 @@ use super::curve::{Curve, border};
 use super::heuristic::codes;
 use super::linear::Order;
 use super::reference::PrimRef;
-use super::subtree::{Subtree, join, task_child};
+use super::subtree::{Piece, Subtree, join, task_child};
 use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
@@ -60,31 +60,45 @@ pub(super) fn build<S: Scalar>(
     let is_small = |aabb: &Aabb<S>, len: usize| {
         len == 1 || aabb.scaled_half_area(scale).to_f64() <= LARGEST * share * len as f64
     };
-    let parts = parallel::map(tasks, |task: Range<usize>| {
-        let (mut clusters, mut open) = (Vec::new(), vec![task]);
+    let tasks = parallel::map(tasks, |task: Range<usize>| {
+        let mut built = Subtree::with_capacity(task.len() / 4, task.len());
+        let (mut clusters, mut open, mut parts) = (Vec::new(), vec![task], Vec::with_capacity(MAX_DEPTH + 1));
         if watch.ask() == Pace::Stop {
-            return clusters;
+            return (built, clusters);
         }
         while let Some(range) = open.pop() {
             let keys = &curve.keys[range.clone()];
             // References lie in the input's order: those of the next cluster are asked for.
-            for &key in curve.keys[range.end..].iter().take(size.min(AHEAD)) {
-                prefetch(core::ptr::from_ref(&references[curve.place(key)]).cast(), size_of::<PrimRef<S>>());
+            for key in curve.keys[range.end..].iter().take(size.min(AHEAD)) {
+                prefetch(core::ptr::from_ref(order.reference(key)).cast(), size_of::<PrimRef<S>>());
             }
-            let cluster = (keys.len() <= size).then(|| order.build(keys));
-            match cluster.filter(|(_, aabb)| is_small(aabb, keys.len())) {
-                Some((subtree, aabb)) if subtree.depth() <= DEPTH => clusters.push((subtree, aabb)),
-                // By halves.
-                Some((_, aabb)) => clusters.push((order.build(&curve.in_a_row(keys)).0, aabb)),
-                None => {
-                    let border = range.start + border(keys);
-                    open.extend([border..range.end, range.start..border]);
-                }
+            if keys.len() > size || !is_small(&order.bounds(keys), keys.len()) {
+                let border = range.start + border(keys);
+                open.extend([border..range.end, range.start..border]);
+                continue;
             }
+            let begin = (built.nodes.len(), built.indices.len());
+            let mut root = order.build(keys, &mut built, &mut parts);
+            if root.height > DEPTH {
+                built.nodes.truncate(begin.0);
+                built.indices.truncate(begin.1);
+                root = order.build(&curve.in_a_row(keys), &mut built, &mut parts);
+            }
+            clusters.push((begin.0..built.nodes.len(), begin.1..built.indices.len(), root));
         }
-        clusters
+        (built, clusters)
     });
-    let (subtrees, boxes): (Vec<_>, Vec<_>) = parts.into_iter().flatten().unzip();
+    let clusters = tasks.iter().flat_map(|(built, clusters)| {
+        clusters.iter().map(|(nodes, slots, root)| {
+            let piece = Piece {
+                nodes: &built.nodes[nodes.clone()],
+                root: root.child,
+                indices: &built.indices[slots.clone()],
+            };
+            (piece, root.aabb)
+        })
+    });
+    let (subtrees, boxes): (Vec<_>, Vec<_>) = clusters.unzip();
     if boxes.is_empty() {
         // It was stopped.
         return Subtree::with_capacity(0, 0);

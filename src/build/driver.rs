@@ -106,7 +106,7 @@ fn build_by_splits<S: Scalar, H: Heuristic<S> + ?Sized>(
     let root = Set { memory: &mut references, len, aabb, depth: 0 };
     let (top, tasks) = build_top(OpenNode { set: root, parent: None }, &build);
     let subtrees = parallel::map(tasks, |task| build_subtree(task, &build));
-    join(top, &subtrees)
+    join(top, &subtrees.iter().map(Subtree::all).collect::<Vec<_>>())
 }
 
 /// Divides all sets of more than [`TASK_SIZE`] references, and returns the others as tasks; and, once the build is not steady

@@ -15,7 +15,7 @@ use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
 use crate::simd::prefetch;
-use crate::tree::{Child, MAX_DEPTH, Node};
+use crate::tree::{Child, Node};
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -39,7 +39,10 @@ pub(super) fn build<S: Scalar>(
             return (Subtree::with_capacity(0, 0), Aabb::EMPTY);
         }
         watch.place(task.len());
-        order.build(&curve.keys[task])
+        let mut subtree = Subtree::with_capacity(task.len() / 4, task.len());
+        let root = order.build(&curve.keys[task], &mut subtree, &mut Vec::new());
+        subtree.root = root.child;
+        (subtree, root.aabb)
     });
     let (subtrees, boxes): (Vec<_>, Vec<_>) = built.into_iter().unzip();
     // Children lie behind their parents.
@@ -51,7 +54,7 @@ pub(super) fn build<S: Scalar>(
         });
         top.nodes[index] = Node { children, ..Node::new(boxes) };
     }
-    join(top, &subtrees)
+    join(top, &subtrees.iter().map(Subtree::all).collect::<Vec<_>>())
 }
 
 /// What the keys stand for.
@@ -62,72 +65,93 @@ pub(super) struct Order<'r, S> {
 }
 
 /// Neighbouring keys below one node, or in one leaf that may still grow.
-struct Part<S> {
+pub(super) struct Part<S> {
     keys: Range<usize>,
-    /// The node with its box.
-    node: Option<(Child, Aabb<S>)>,
+    root: Option<Root<S>>,
+}
+
+/// The root of a finished tree.
+#[derive(Clone, Copy)]
+pub(super) struct Root<S> {
+    pub child: Child,
+    pub aabb: Aabb<S>,
+    /// Of the longest path below, in steps.
+    pub height: usize,
 }
 
 impl<S: Scalar> Order<'_, S> {
-    /// Builds the tree over sorted keys, with its box.
+    /// Appends the tree over sorted keys, at least one, to the nodes and the indices of `subtree`: numbers in it are counted from
+    /// there. `open` is memory, empty before and after.
     ///
     /// A node ends where neighbouring keys differ in a higher bit than any two inside. Keys come from the right, and the
     /// nodes that await what is on their left lie on a stack: so nodes are made right side first and parents last,
     /// which backwards is depth first.
-    pub fn build(&self, keys: &[u64]) -> (Subtree<S>, Aabb<S>) {
-        let mut nodes = Vec::with_capacity(keys.len() / 4);
-        let mut open: Vec<Part<S>> = Vec::with_capacity(MAX_DEPTH + 1);
+    pub fn build(&self, keys: &[u64], subtree: &mut Subtree<S>, open: &mut Vec<Part<S>>) -> Root<S> {
+        let start = subtree.nodes.len();
         for first in (0..keys.len()).rev() {
             if let Some(ahead) = first.checked_sub(AHEAD) {
                 prefetch(core::ptr::from_ref(self.reference(&keys[ahead])).cast(), size_of::<PrimRef<S>>());
             }
-            let mut part = Part { keys: first..first + 1, node: None };
+            let mut part = Part { keys: first..first + 1, root: None };
             let on_the_left = difference(keys, first);
             while difference(keys, part.keys.end) < on_the_left
                 && let Some(right) = open.pop()
             {
-                part = self.above(part, right, keys, &mut nodes);
+                part = self.above(part, right, keys, start, &mut subtree.nodes);
             }
             open.push(part);
         }
-        let indices = keys.iter().map(|key| self.reference(key).index).collect();
-        let Some(root) = open.pop() else {
-            return (Subtree { nodes, root: Child::default(), indices }, Aabb::EMPTY);
-        };
-        let (root, aabb) = self.settled(root, keys);
+        let mut root = self.settled(open.pop().unwrap_or(Part { keys: 0..0, root: None }), keys);
+        subtree.indices.extend(keys.iter().map(|key| self.reference(key).index));
         // Numbers are counted from the last node made.
+        let nodes = &mut subtree.nodes[start..];
         let last = nodes.len().wrapping_sub(1) as u32;
         let turned =
             |child: Child| if child.is_leaf() { child } else { Child { first: last - child.first, ..child } };
         nodes.reverse();
-        for node in &mut nodes {
+        for node in nodes {
             node.children = node.children.map(turned);
         }
-        (Subtree { nodes, root: turned(root), indices }, aabb)
+        root.child = turned(root.child);
+        root
     }
 
     /// The node above two parts, or a leaf of both.
-    fn above(&self, left: Part<S>, right: Part<S>, keys: &[u64], nodes: &mut Vec<Node<S>>) -> Part<S> {
+    fn above(
+        &self,
+        left: Part<S>,
+        right: Part<S>,
+        keys: &[u64],
+        start: usize,
+        nodes: &mut Vec<Node<S>>,
+    ) -> Part<S> {
         let both = left.keys.start..right.keys.end;
         if both.len() <= self.max_leaf_size {
-            return Part { keys: both, node: None };
+            return Part { keys: both, root: None };
         }
-        let ((left, left_box), (right, right_box)) = (self.settled(left, keys), self.settled(right, keys));
-        let index = nodes.len();
-        nodes.push(Node { children: [left, right], ..Node::new([left_box, right_box]) });
-        Part { keys: both, node: Some((Child::inner(index), left_box.union(right_box))) }
+        let (left, right) = (self.settled(left, keys), self.settled(right, keys));
+        let child = Child::inner(nodes.len() - start);
+        nodes.push(Node { children: [left.child, right.child], ..Node::new([left.aabb, right.aabb]) });
+        let height = 1 + left.height.max(right.height);
+        Part { keys: both, root: Some(Root { child, aabb: left.aabb.union(right.aabb), height }) }
     }
 
     /// A part that does not grow any more.
-    fn settled(&self, part: Part<S>, keys: &[u64]) -> (Child, Aabb<S>) {
-        let leaf = || {
-            let references = keys[part.keys.clone()].iter().map(|key| self.reference(key));
-            (Child::leaf(part.keys.clone()), bounds(references))
+    fn settled(&self, part: Part<S>, keys: &[u64]) -> Root<S> {
+        let leaf = || Root {
+            child: Child::leaf(part.keys.clone()),
+            aabb: self.bounds(&keys[part.keys.clone()]),
+            height: 0,
         };
-        part.node.unwrap_or_else(leaf)
+        part.root.unwrap_or_else(leaf)
     }
 
-    fn reference(&self, key: &u64) -> &PrimRef<S> {
+    /// The box around what keys stand for.
+    pub fn bounds(&self, keys: &[u64]) -> Aabb<S> {
+        bounds(keys.iter().map(|key| self.reference(key)))
+    }
+
+    pub fn reference(&self, key: &u64) -> &PrimRef<S> {
         &self.references[self.curve.place(*key)]
     }
 }

@@ -14,6 +14,14 @@ pub(super) struct Subtree<S> {
     pub indices: Vec<u32>,
 }
 
+/// A subtree that lies among others.
+#[derive(Clone, Copy)]
+pub(super) struct Piece<'s, S> {
+    pub nodes: &'s [Node<S>],
+    pub root: Child,
+    pub indices: &'s [u32],
+}
+
 /// The inner node and the side that refers to a child; none for the root.
 pub(super) type Parent = Option<(usize, usize)>;
 
@@ -33,17 +41,9 @@ impl<S: Scalar> Subtree<S> {
         }
     }
 
-    /// Of the longest path, in steps. Children lie behind their parents.
-    pub fn depth(&self) -> usize {
-        let mut depths = vec![0; self.nodes.len()];
-        let mut deepest = 0;
-        for (index, node) in self.nodes.iter().enumerate() {
-            deepest = deepest.max(depths[index] + 1);
-            for child in node.children.iter().filter(|child| !child.is_leaf()) {
-                depths[child.first as usize] = depths[index] + 1;
-            }
-        }
-        deepest
+    /// All of it.
+    pub fn all(&self) -> Piece<'_, S> {
+        Piece { nodes: &self.nodes, root: self.root, indices: &self.indices }
     }
 
     /// Makes an inner node above children with these boxes, and tells its number.
@@ -75,15 +75,15 @@ pub(super) fn task_of<S>(child: Child, top: &Subtree<S>) -> Option<usize> {
 
 /// The top, which has no leaves, and the subtrees of its tasks as one tree, a left child the node after its parent
 /// everywhere, and slots in the order of the leaves.
-pub(super) fn join<S: Scalar>(mut top: Subtree<S>, subtrees: &[Subtree<S>]) -> Subtree<S> {
+pub(super) fn join<S: Scalar>(mut top: Subtree<S>, subtrees: &[Piece<'_, S>]) -> Subtree<S> {
     // Which nodes and slots follow one another, and by how much those of subtrees move.
     let (mut nodes, mut slots) = (Vec::<(Range<usize>, Option<usize>, Move)>::new(), Vec::<&[u32]>::new());
     let mut end = Move { node: 0, slot: 0 };
     let mut open = vec![(None, top.root)];
     while let Some((parent, child)) = open.pop() {
         let moved = if let Some(task) = task_of(child, &top) {
-            let Subtree { nodes: inner, root, indices } = &subtrees[task];
-            let root = end.of(*root);
+            let Piece { nodes: inner, root, indices } = subtrees[task];
+            let root = end.of(root);
             nodes.push((0..inner.len(), Some(task), end));
             slots.push(indices);
             end = Move { node: end.node + inner.len() as u32, slot: end.slot + indices.len() as u32 };
@@ -98,8 +98,7 @@ pub(super) fn join<S: Scalar>(mut top: Subtree<S>, subtrees: &[Subtree<S>]) -> S
         top.refer(parent, moved);
     }
     let parts = nodes.into_iter().map(|(range, task, by)| {
-        let subtree = task.map_or(&top, |task| &subtrees[task]);
-        let nodes = subtree.nodes[range].iter();
+        let nodes = task.map_or(&top.nodes[..], |task| subtrees[task].nodes)[range].iter();
         nodes.map(move |node| Node { children: node.children.map(|child| by.of(child)), ..*node })
     });
     let indices = parallel::concat(slots.into_iter().map(|slots| slots.iter().copied()).collect());
