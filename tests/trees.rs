@@ -167,6 +167,7 @@ fn a_build_in_a_hurry_is_coarser_and_answers_alike() {
 
 #[test]
 fn a_hurry_below_a_long_path_keeps_the_depth_bound() {
+    let triangles: Vec<_> = triangles(20_000).into_iter().chain(converging()).collect();
     // One by one down to half of the depth, then told to hurry.
     let asked = Arc::new(AtomicUsize::new(0));
     let watcher = {
@@ -174,8 +175,7 @@ fn a_hurry_below_a_long_path_keeps_the_depth_bound() {
         move |_| if asked.fetch_add(1, Relaxed) < 40 { Pace::Steady } else { Pace::Hurry }
     };
     let builder = Bvh::builder().heuristic(Stubborn(|_| Split::Count { axis: Axis::X, left: 1 }));
-    let bvh =
-        builder.threads(1).max_leaf_size(1).watch(watcher).layout::<Tree>().build(triangles(20_000)).unwrap();
+    let bvh = builder.threads(1).max_leaf_size(1).watch(watcher).layout::<Tree>().build(triangles).unwrap();
     bvh.check().unwrap();
     let depth = bvh.report().max_depth;
     assert!(depth > 50 && depth <= MAX_DEPTH, "{depth}");
@@ -304,5 +304,6 @@ fn an_absurd_growth_is_bounded() {
         let bvh = Bvh::builder().heuristic(heuristic).build(triangles(500)).unwrap();
         bvh.check().unwrap();
         assert!(bvh.report().references <= 500 * (1 + SpatialSah::MAX_GROWTH as usize));
+        assert!(Heuristic::<f32>::spare(&heuristic, 1000) <= 4000, "{growth}");
     }
 }
