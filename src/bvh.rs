@@ -322,7 +322,7 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
     /// primitive hit, its first. Lazy: only as much of the tree is visited as it takes to be sure
     /// of the hits asked for.
     pub fn hits(&self, ray: &Ray<P::Scalar>) -> Hits<'_, P, L> {
-        Hits::new(&self.layout, &self.primitives, ray, ())
+        Hits::new(&self.layout, self.backend, &self.primitives, ray, ())
     }
 
     /// As [`hits`](Self::hits), telling `recorder` of each step.
@@ -331,6 +331,6 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
         ray: &Ray<P::Scalar>,
         recorder: &'a mut R,
     ) -> Hits<'a, P, L, &'a mut R> {
-        Hits::new(&self.layout, &self.primitives, ray, recorder)
+        Hits::new(&self.layout, self.backend, &self.primitives, ray, recorder)
     }
 }

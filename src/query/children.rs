@@ -75,4 +75,4 @@ pub(super) fn next_lane(met: &mut u32) -> usize {
 
 /// Stored a line at a time: across two lines it takes a fifth more.
 #[repr(align(64))]
-struct Distances<S>([S; 16]);
+pub(super) struct Distances<S>(pub [S; 16]);

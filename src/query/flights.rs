@@ -5,7 +5,8 @@
 
 use super::Visitor;
 use super::pending::{Memory, Pending};
-use super::wide::{SlabLanes, first, step, suits};
+use super::slab_lanes::SlabLanes;
+use super::wide::{first, step, suits};
 use crate::geometry::{PreparedRay, Ray, Shear, Slabs};
 use crate::layout::{Form, Reference, WideTree};
 use crate::primitive::Intersect;

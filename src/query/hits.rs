@@ -1,124 +1,91 @@
 //! All hits along a ray, in order, found as they are asked for.
 
+use super::ahead::Ahead;
 use super::counters::Recorder;
-use super::{Hit, HitOf, accept};
-use crate::geometry::{PreparedRay, Ray, Scalar};
-use crate::layout::{Layout, Part};
+use super::{HitOf, Traverse};
+use crate::geometry::{PreparedRay, Ray};
 use crate::primitive::Intersect;
-use alloc::collections::BinaryHeap;
-use core::cmp::Ordering;
+use crate::simd::{Backend, Kernel};
+use fearless_simd::Simd;
 
 /// An iterator over the hits of a ray by increasing (t, index).
 ///
-/// A queue holds what is known of the ray: boxes by where the ray enters them, hits by their t.
-/// The front of the queue, if it is a box, is opened, and if it is a hit, is next: nothing behind
-/// the front can come before it, since no hit lies before its box (the own-box rule). So the first
-/// hits cost little more than the closest one.
+/// Two queues hold what is known of the ray: boxes by where the ray enters them, hits by their t. The nearest box is opened
+/// until none lies before the first hit, which is the next one then: no hit lies before its box (the own-box rule). So the
+/// first hit opens no more than the closest one does, and each that follows only what it takes to be sure of it. Nodes
+/// and leaves are tested as by the other queries, all children or primitives at once.
+///
+/// It allocates, where the closest hit does not: no number of boxes is too many to lie ahead.
 ///
 /// From [`Bvh::hits`](crate::Bvh::hits).
-pub struct Hits<'a, P: Intersect, L: Layout<P>, R = ()> {
+pub struct Hits<'a, P: Intersect, L: Traverse<P>, R = ()> {
     layout: &'a L,
+    backend: Backend,
     primitives: &'a [P],
     ray: PreparedRay<P::Scalar>,
-    queue: BinaryHeap<Event<P::Scalar, P::Payload, L::Place>>,
+    ahead: Ahead<P, L::Place>,
     /// The last answer: a primitive that is in several leaves is met again, but is an answer once.
-    last: Option<(P::Scalar, u32)>,
+    last: Option<(P::Scalar, usize)>,
     recorder: R,
 }
 
-/// Something that lies ahead on the ray.
-struct Event<S, T, B> {
-    t: S,
-    what: What<T, B>,
-}
-
-enum What<T, B> {
-    Box(B),
-    Hit { index: u32, payload: T },
-}
-
-impl<'a, P: Intersect, L: Layout<P>, R: Recorder> Hits<'a, P, L, R> {
-    pub(crate) fn new(layout: &'a L, primitives: &'a [P], ray: &Ray<P::Scalar>, mut recorder: R) -> Self {
-        let mut queue = BinaryHeap::new();
+impl<'a, P: Intersect, L: Traverse<P>, R: Recorder> Hits<'a, P, L, R> {
+    pub(crate) fn new(
+        layout: &'a L,
+        backend: Backend,
+        primitives: &'a [P],
+        ray: &Ray<P::Scalar>,
+        mut recorder: R,
+    ) -> Self {
         let ray = ray.prepare();
+        let mut root = None;
         if ray.is_valid() {
             recorder.ray();
-            if let Some(root) = layout.root()
-                && let Some(t) = ray.slabs.entry(&layout.aabb()).filter(|&t| t <= ray.t_max)
-            {
-                queue.push(Event { t, what: What::Box(root) });
-            }
+            let entry = ray.slabs.entry(&layout.aabb()).filter(|&entry| entry <= ray.t_max);
+            root = layout.root().zip(entry);
         }
-        Self { layout, primitives, ray, queue, last: None, recorder }
-    }
-
-    /// Puts what is in a box into the queue.
-    fn open(&mut self, place: L::Place) {
-        let Self { layout, primitives, ray, queue, recorder, .. } = self;
-        let mut is_leaf = false;
-        layout.open(place, |part| match part {
-            Part::Child(aabb, place) => {
-                if let Some(t) = ray.slabs.entry(&aabb).filter(|&t| t <= ray.t_max) {
-                    queue.push(Event { t, what: What::Box(place) });
-                }
-            }
-            Part::Primitive(index) => {
-                is_leaf = true;
-                recorder.primitive();
-                if let Some((t, payload)) = accept(&primitives[index as usize], ray, ray.t_max) {
-                    queue.push(Event { t, what: What::Hit { index, payload } });
-                }
-            }
-        });
-        if is_leaf { recorder.leaf() } else { recorder.node() }
+        let ahead = Ahead::new(root);
+        Self { layout, backend, primitives, ray, ahead, last: None, recorder }
     }
 }
 
-impl<P: Intersect, L: Layout<P>, R: Recorder> Iterator for Hits<'_, P, L, R> {
+impl<P: Intersect, L: Traverse<P>, R: Recorder> Iterator for Hits<'_, P, L, R> {
     type Item = HitOf<P>;
 
+    #[inline]
     fn next(&mut self) -> Option<HitOf<P>> {
         loop {
-            let Event { t, what } = self.queue.pop()?;
-            match what {
-                What::Box(place) => self.open(place),
-                What::Hit { index, payload } => {
-                    if self.last.is_none_or(|last| last < (t, index)) {
-                        self.last = Some((t, index));
-                        return Some(Hit { t, index: index as usize, payload });
-                    }
-                }
+            if !self.ahead.is_settled() {
+                let Self { layout, primitives, ray, ahead, recorder, .. } = self;
+                self.backend.run(Open { layout: *layout, primitives, ray, ahead, recorder });
+            }
+            let hit = self.ahead.next_hit()?;
+            if self.last.is_none_or(|last| last < (hit.t, hit.index)) {
+                self.last = Some((hit.t, hit.index));
+                return Some(hit);
             }
         }
     }
 }
 
-impl<P: Intersect, L: Layout<P>, R: Recorder> core::iter::FusedIterator for Hits<'_, P, L, R> {}
+impl<P: Intersect, L: Traverse<P>, R: Recorder> core::iter::FusedIterator for Hits<'_, P, L, R> {}
 
-impl<S: Scalar, T, B> Ord for Event<S, T, B> {
-    /// The heap's greatest is the first along the ray: a box before a hit at the same t, which may
-    /// hold one with a lower index. No t is NaN, nor is a hit's -0; a box's entry may be, and no
-    /// matter.
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.t.total_cmp(&self.t).then_with(|| match (&self.what, &other.what) {
-            (What::Hit { index: a, .. }, What::Hit { index: b, .. }) => b.cmp(a),
-            (What::Box(_), What::Hit { .. }) => Ordering::Greater,
-            (What::Hit { .. }, What::Box(_)) => Ordering::Less,
-            (What::Box(_), What::Box(_)) => Ordering::Equal,
-        })
-    }
+/// Boxes are opened until the next hit is known.
+struct Open<'q, P: Intersect, L: Traverse<P>, R> {
+    layout: &'q L,
+    primitives: &'q [P],
+    ray: &'q PreparedRay<P::Scalar>,
+    ahead: &'q mut Ahead<P, L::Place>,
+    recorder: &'q mut R,
 }
 
-impl<S: Scalar, T, B> PartialOrd for Event<S, T, B> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
+impl<P: Intersect, L: Traverse<P>, R: Recorder> Kernel for Open<'_, P, L, R> {
+    const IS_WIDE: bool = L::IS_WIDE;
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: Simd>(self, isa: I) {
+        let Self { layout, primitives, ray, ahead, recorder } = self;
+        layout.open_ahead(isa, ray, primitives, ahead, recorder);
     }
 }
-
-impl<S: Scalar, T, B> PartialEq for Event<S, T, B> {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl<S: Scalar, T, B> Eq for Event<S, T, B> {}

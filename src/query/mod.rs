@@ -1,8 +1,9 @@
 //! Questions to a hierarchy. One traversal loop for each layout; the queries are visitors of what it reaches.
 //!
-//! The lazy query in order of t, whose loop is a queue instead of a stack, is the one exception.
+//! The lazy query in order of t is the one exception: it has a loop of its own, round a queue instead of a stack.
 
 mod accept;
+mod ahead;
 mod any;
 mod ask;
 mod batch;
@@ -13,10 +14,12 @@ mod counters;
 mod flights;
 mod hits;
 mod pending;
+mod slab_lanes;
 mod stack;
 mod wide;
 
 pub(crate) use accept::{accept, precedes};
+use ahead::Ahead;
 pub(crate) use any::Any;
 pub(crate) use ask::Ask;
 pub(crate) use batch::ask_all;
@@ -78,6 +81,17 @@ pub trait Traverse<P: Intersect>: Layout<P> {
             finish(number, visitor);
         }
     }
+
+    /// Opens the boxes ahead of the ray, the nearest first, until nothing can come before the next hit.
+    #[doc(hidden)]
+    fn open_ahead<I: Simd>(
+        &self,
+        isa: I,
+        ray: &PreparedRay<P::Scalar>,
+        primitives: &[P],
+        ahead: &mut Ahead<P, Self::Place>,
+        recorder: &mut impl Recorder,
+    );
 }
 
 /// A query, as the loops see it.

@@ -10,11 +10,13 @@
 //! pop:  entries beyond the visitor's limit, which may have shrunk since, are dropped
 //! ```
 
-use super::children::{last, nearest, next_lane};
+use super::ahead::Ahead;
+use super::children::{Distances, last, nearest, next_lane};
 use super::counters::Recorder;
 use super::pending::{Memory, Pending};
+use super::slab_lanes::SlabLanes;
 use super::{Traverse, Visitor, flights};
-use crate::geometry::{PreparedRay, Ray, Scalar, Slabs};
+use crate::geometry::{PreparedRay, Ray, Scalar};
 use crate::layout::{Form, Outline, Reference, WideNode, WideTree};
 use crate::primitive::{Found, Intersect, LEAF_WIDTH, Leaf, Operands};
 use crate::simd::{Count, Lanes, Width};
@@ -46,6 +48,43 @@ where
             step(isa, self, next, &prepared, ray, &lanes, suits, &mut pending, visitor, recorder)
         {
             next = place;
+        }
+    }
+
+    #[inline(always)]
+    fn open_ahead<I: Simd>(
+        &self,
+        isa: I,
+        ray: &PreparedRay<P::Scalar>,
+        primitives: &[P],
+        ahead: &mut Ahead<P, Reference>,
+        recorder: &mut impl Recorder,
+    ) {
+        let prepared = *ray;
+        let suits = suits::<P, F, N>(self, &prepared);
+        let lanes =
+            SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new::<F::Node, N>(isa, &prepared.slabs);
+        while let Some(place) = ahead.next_box() {
+            if place.is_leaf() {
+                recorder.leaf();
+                // It goes on to the leaf's end whatever it finds.
+                let visitor = &mut ahead.visitor(primitives, prepared.t_max);
+                let _ = leaf::<P, _, _, I, F, N>(isa, self, place, &prepared, ray, suits, visitor, recorder);
+            } else {
+                recorder.node();
+                let node = self.node(place);
+                let (near, mut met) = lanes.enter(node, ray, prepared.t_max);
+                let mut entries = Distances([P::Scalar::ZERO; 16]);
+                near.store(&mut entries.0);
+                while met != 0 {
+                    let lane = next_lane(&mut met);
+                    let child = node.children()[lane % N];
+                    // Most that is met will be opened, and others before it, so there is time to fetch it: all hits of
+                    // 300,000 triangles take a quarter to two fifths less.
+                    F::prefetch(self, child);
+                    ahead.add(child, entries.0[lane % 16]);
+                }
+            }
         }
     }
 
@@ -125,13 +164,7 @@ where
     } else {
         recorder.node();
         let node = tree.node(place);
-        let (near, met) = if lanes.t_min < P::Scalar::ZERO {
-            let (near, met) = enter_behind(node, ray, visitor.limit());
-            // SAFETY: sixteen scalars, and no lanes are more.
-            (unsafe { L::load(isa, near.as_ptr()) }, met)
-        } else {
-            lanes.enter(node, visitor.limit())
-        };
+        let (near, met) = lanes.enter(node, ray, visitor.limit());
         if met != 0 {
             return Some(if met & (met - 1) == 0 {
                 node.children()[met.trailing_zeros() as usize % N]
@@ -223,71 +256,4 @@ fn ask_anew<P: Intersect, V: Visitor<P>>(
         }
     }
     (visitor, ControlFlow::Continue(()))
-}
-
-/// The slabs in lanes.
-pub(super) struct SlabLanes<S, L> {
-    origin: [L; 3],
-    inv_near: [L; 3],
-    inv_far: [L; 3],
-    /// Where in a node the near planes of each axis lie, in bytes.
-    first: [usize; 3],
-    /// Where the far planes do.
-    last: [usize; 3],
-    t_min: S,
-}
-
-impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
-    #[inline(always)]
-    pub fn new<T: WideNode<S, N>, const N: usize>(isa: L::Isa, slabs: &Slabs<S>) -> Self {
-        let splat = |[x, y, z]: [S; 3]| [L::splat(isa, x), L::splat(isa, y), L::splat(isa, z)];
-        let [x, y, z] = slabs.negative;
-        let row = |axis: usize, is_max: bool| (2 * axis + usize::from(is_max)) * T::ROW;
-        Self {
-            origin: splat(slabs.origin),
-            inv_near: splat(slabs.inv_near),
-            inv_far: splat(slabs.inv_far),
-            first: [row(0, x), row(1, y), row(2, z)],
-            last: [row(0, !x), row(1, !y), row(2, !z)],
-            // +0, whose bits are those of an integer.
-            t_min: slabs.t_min + S::ZERO,
-        }
-    }
-
-    /// Where the ray enters the children's boxes, from t_min on, and which of them it meets up to `limit`.
-    #[inline(always)]
-    fn enter<const N: usize>(&self, node: &impl WideNode<S, N>, limit: S) -> (L, u32) {
-        let isa = self.origin[0].isa();
-        let (mut near, mut far) = (L::splat(isa, self.t_min), L::splat(isa, limit));
-        for axis in 0..3 {
-            // SAFETY: the places of `new`.
-            let [first, last] = unsafe { node.planes::<L>(isa, axis, [self.first[axis], self.last[axis]]) };
-            let (first, last) = (first - self.origin[axis], last - self.origin[axis]);
-            let (inv_near, inv_far) = (self.inv_near[axis], self.inv_far[axis]);
-            near = (first * inv_near).max(near);
-            far = (last * inv_far).min(far);
-        }
-        (near, L::bits(near.le(far)) & node.lanes())
-    }
-}
-
-/// The same for a ray that also looks behind its origin, where the padding has the other sign.
-#[cold]
-#[inline(never)]
-fn enter_behind<S: Scalar, T: WideNode<S, N>, const N: usize>(
-    node: &T,
-    ray: &Ray<S>,
-    limit: S,
-) -> ([S; 16], u32) {
-    let slabs = Slabs::new(ray);
-    let (mut entries, mut met) = ([S::ZERO; 16], 0);
-    for (lane, entry) in entries.iter_mut().enumerate().take(N) {
-        if let Some((aabb, _)) = node.child(lane)
-            && let Some(t) = slabs.entry(&aabb).filter(|&t| t <= limit)
-        {
-            *entry = t;
-            met |= 1 << lane;
-        }
-    }
-    (entries, met)
 }
