@@ -23,7 +23,7 @@ pub struct Options {
     #[arg(long, value_enum, default_value_t = Method::BinnedSah)]
     pub heuristic: Method,
 
-    /// The most primitives that a leaf may hold [default: the library's]
+    /// The most primitives in a leaf of the binary tree: those of the wide one hold up to 8 [default: the library's]
     #[arg(long, value_name = "N")]
     pub max_leaf_size: Option<NonZeroUsize>,
 
