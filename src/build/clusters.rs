@@ -8,7 +8,8 @@
 //! Most of a build's time goes into its many small nodes, most of a tree's quality into its few large ones. So the curve
 //! settles the small ones, and the heuristic the others.
 //!
-//! The boxes of large primitives among small ones would hide what is small from the heuristic: so a cluster's box is bounded.
+//! The boxes of large primitives among small ones would hide what is small from the heuristic: so the primitives of a
+//! cluster are about as large as one another, if it is not small itself.
 //! Codes with bits of size among those of place (Vinkler, Bittner and Havran, Extended Morton Codes, HPG 2017) were
 //! no better in six ways of mixing them.
 
@@ -26,8 +27,12 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// A cluster's box has at most this many times its primitives' share of the scene's area.
+/// Up to this many times its primitives' share of the scene's area a cluster's box may have, whatever is in it.
 const LARGEST: f64 = 16.0;
+
+/// How evenly the boxes in a larger one have to be large: the square of their areas' sum over the sum of their squares, which
+/// is their number if all are equal and 1 if one outweighs the others, in parts of their number.
+const EVEN: f64 = 0.5;
 
 /// No cluster's subtree is deeper: what is left of [`MAX_DEPTH`] is the splits'.
 const DEPTH: usize = 16;
@@ -57,8 +62,16 @@ pub(super) fn build<S: Scalar>(
     let order = Order { references, curve: &curve, max_leaf_size };
     let scale = scene.area_scale();
     let share = scene.scaled_half_area(scale).to_f64() / references.len() as f64;
-    let is_small = |aabb: &Aabb<S>, len: usize| {
-        len == 1 || aabb.scaled_half_area(scale).to_f64() <= LARGEST * share * len as f64
+    let area = |aabb: &Aabb<S>| aabb.scaled_half_area(scale).to_f64();
+    let is_cluster = |keys: &[u64]| {
+        let count = keys.len() as f64;
+        if count < 2.0 || area(&order.bounds(keys)) <= LARGEST * share * count {
+            return true;
+        }
+        let areas = keys.iter().map(|key| area(&order.reference(key).aabb));
+        let (sum, squares) =
+            areas.fold((0.0, 0.0), |(sum, squares), area| (sum + area, squares + area * area));
+        sum * sum >= EVEN * count * squares
     };
     let tasks = parallel::map(tasks, |task: Range<usize>| {
         let mut built = Subtree::with_capacity(task.len() / 4, task.len());
@@ -72,7 +85,7 @@ pub(super) fn build<S: Scalar>(
             for key in curve.keys[range.end..].iter().take(size.min(AHEAD)) {
                 prefetch(core::ptr::from_ref(order.reference(key)).cast(), size_of::<PrimRef<S>>());
             }
-            if keys.len() > size || !is_small(&order.bounds(keys), keys.len()) {
+            if keys.len() > size || !is_cluster(keys) {
                 let border = range.start + border(keys);
                 open.extend([border..range.end, range.start..border]);
                 continue;
