@@ -13,9 +13,10 @@ pub(super) struct Move<S> {
     pub gain: S,
 }
 
-/// How many places a search looks at. On six scenes all trees are the same with half as many; where everything overlaps, no
-/// place would be left out, and a round took as long as the square of the nodes.
-const MOST_PLACES: usize = 256;
+/// How many places a search looks at, at the most: rays take as many steps as without a bound on five scenes, with half as many
+/// places within 0.5 %. Where everything overlaps, no place would be left out, and a round took as long as the square of
+/// the nodes.
+const MOST_PLACES: usize = 128;
 
 /// The best place for a node, if there is a better one than its own.
 ///
