@@ -1,7 +1,7 @@
 //! The build of clusters: splits above, Morton's curve below.
 //!
 //! ```text
-//! references -> curve -> subtrees of at most so many keys with small boxes: clusters, a tree for each in one pass
+//! references -> curve -> subtrees of at most so many keys, alike in size: clusters, a tree for each in one pass
 //!            -> splits of clusters -> joined
 //! ```
 //!
@@ -9,8 +9,11 @@
 //! settles the small ones, and the heuristic the others.
 //!
 //! The boxes of large primitives among small ones would hide what is small from the heuristic: so the primitives of a
-//! cluster are about as large as one another, if it is not small itself.
-//! Codes with bits of size among those of place (Vinkler, Bittner and Havran, Extended Morton Codes, HPG 2017) were
+//! cluster are about as large as one another, if it is not small itself. A bound on its box alone made single ones of the
+//! primitives of a volume (737 ns a triangle of a soup instead of 150).
+//!
+//! Clusters of 4 or 8 below the surface area heuristic make trees as good as those of none, and are no quicker to
+//! build: some 280 ns go into each node, of which there are as many. Codes with bits of size among those of place (Vinkler, Bittner and Havran, Extended Morton Codes, HPG 2017) were
 //! no better in six ways of mixing them.
 
 use super::curve::{Curve, border};

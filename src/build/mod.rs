@@ -1,7 +1,9 @@
-//! From primitives to a tree: one top-down driver for every heuristic.
+//! From primitives to a tree: one driver for every heuristic.
 //!
 //! ```text
-//! primitives -> references (box, index) -> driver, asking the heuristic -> tree -> reinsertion
+//! primitives -> references (box, index) -> driver, asking the heuristic for splits -> tree -> reinsertion
+//!                                          or for codes along a curve
+//!                                          or for splits above, a curve below
 //! ```
 //!
 //! The driver alone partitions references, bounds the depth and falls back to equal halves, so
