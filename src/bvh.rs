@@ -260,8 +260,9 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
     /// [`closest_hit`](Self::closest_hit) of each ray, the same bits, in the place of the same number. If there are more
     /// rays than places or more places than rays, the others are left alone.
     ///
-    /// With the feature `std`, a first part of a long list is traced both one by one and several rays in turns, so that one goes
-    /// on while others wait for memory, and the rest in whichever way a clock found quicker: see the README for what that gains.
+    /// With the feature `std`, of a long list some rays are traced one by one and some several in turns, so that one goes
+    /// on while others wait for memory, now and then, and the rest in whichever way a clock found quicker: see the README for
+    /// what that gains.
     ///
     /// ```
     /// use bvhkit::{Bvh, Ray, Sphere};

@@ -3,39 +3,30 @@
 use crate::hierarchy::{Build, Hierarchy, Method, Statistics};
 use crate::shared::agreement::{Hit, bare};
 use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, Morton, SpatialSah, SweepSah};
-use bvhkit::{Bvh, Optimise, Quality, Ray, Triangle};
+use bvhkit::{Bvh, Quality, Ray, Triangle};
 
 pub fn methods() -> [Method; 9] {
     [
-        method("median", |triangles| prepare(Median, None, triangles)),
-        method("midpoint", |triangles| prepare(Midpoint, None, triangles)),
-        method("morton", |triangles| prepare(Morton, None, triangles)),
-        method("binned", |triangles| prepare(BinnedSah::default(), None, triangles)),
-        method("sweep", |triangles| prepare(SweepSah::default(), None, triangles)),
-        method("spatial", |triangles| prepare(SpatialSah::default(), None, triangles)),
-        method("fast", |triangles| preset(Quality::Fast, triangles)),
-        method("balanced", |triangles| preset(Quality::Balanced, triangles)),
-        method("high", |triangles| preset(Quality::High, triangles)),
+        method("median", |triangles| prepare(Median, triangles)),
+        method("midpoint", |triangles| prepare(Midpoint, triangles)),
+        method("morton", |triangles| prepare(Morton, triangles)),
+        method("binned", |triangles| prepare(BinnedSah::default(), triangles)),
+        method("sweep", |triangles| prepare(SweepSah::default(), triangles)),
+        method("spatial", |triangles| prepare(SpatialSah::default(), triangles)),
+        method("fast", |triangles| prepare(Quality::Fast, triangles)),
+        method("balanced", |triangles| prepare(Quality::Balanced, triangles)),
+        method("high", |triangles| prepare(Quality::High, triangles)),
     ]
-}
-
-fn preset(quality: Quality, triangles: &[Triangle]) -> Build {
-    prepare(quality, Some(quality.optimise()), triangles)
 }
 
 fn method(name: &'static str, prepare: fn(&[Triangle]) -> Build) -> Method {
     Method { name, ours: true, prepare }
 }
 
-fn prepare(
-    heuristic: impl Heuristic<f32> + Copy + 'static,
-    optimise: Option<Optimise>,
-    triangles: &[Triangle],
-) -> Build {
+fn prepare(heuristic: impl Heuristic<f32> + Copy + 'static, triangles: &[Triangle]) -> Build {
     let triangles = triangles.to_vec();
     Box::new(move || {
         let builder = Bvh::builder().heuristic(heuristic);
-        let builder = if let Some(optimise) = optimise { builder.optimise(optimise) } else { builder };
         Box::new(builder.build(triangles.iter().copied()).expect("the coordinates are finite"))
     })
 }

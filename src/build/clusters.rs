@@ -20,11 +20,10 @@ use super::curve::{Curve, border};
 use super::heuristic::codes;
 use super::linear::Order;
 use super::reference::PrimRef;
-use super::subtree::{Piece, Subtree, join, task_child};
+use super::subtree::{Piece, Subtree, TASK_SIZE, join, task_child};
 use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
-use crate::simd::prefetch;
 use crate::tree::{Child, MAX_DEPTH};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -43,8 +42,7 @@ const DEPTH: usize = 16;
 /// How deep the splits may go.
 pub(super) const SPLIT_DEPTH: usize = MAX_DEPTH - DEPTH;
 
-/// The largest clusters: as many halve to one in less than [`DEPTH`] steps.
-const MAX_SIZE: usize = 1 << 12;
+const _: () = assert!(TASK_SIZE < 1 << DEPTH, "what lies in a task halves to one in fewer steps");
 
 /// How many references are asked for before their turn.
 const AHEAD: usize = 64;
@@ -59,13 +57,14 @@ pub(super) fn build<S: Scalar>(
     watch: &Watch<'_>,
     split: impl FnOnce(Vec<PrimRef<S>>) -> Subtree<S>,
 ) -> Subtree<S> {
-    let size = size.min(MAX_SIZE);
+    // No cluster is in two tasks.
+    let size = size.min(TASK_SIZE);
     let curve = Curve::new(&codes(references, scene), MAX_DEPTH);
     let (_, tasks) = curve.divide::<S>();
     let order = Order { references, curve: &curve, max_leaf_size };
     let scale = scene.area_scale();
-    let share = scene.scaled_half_area(scale).to_f64() / references.len() as f64;
     let area = |aabb: &Aabb<S>| aabb.scaled_half_area(scale).to_f64();
+    let share = area(scene) / references.len() as f64;
     let is_cluster = |keys: &[u64]| {
         let count = keys.len() as f64;
         if count < 2.0 || area(&order.bounds(keys)) <= LARGEST * share * count {
@@ -84,10 +83,8 @@ pub(super) fn build<S: Scalar>(
         }
         while let Some(range) = open.pop() {
             let keys = &curve.keys[range.clone()];
-            // References lie in the input's order: those of the next cluster are asked for.
-            for key in curve.keys[range.end..].iter().take(size.min(AHEAD)) {
-                prefetch(core::ptr::from_ref(order.reference(key)).cast(), size_of::<PrimRef<S>>());
-            }
+            // Those of the next cluster.
+            curve.keys[range.end..].iter().take(size.min(AHEAD)).for_each(|key| order.ask_for(key));
             if keys.len() > size || !is_cluster(keys) {
                 let border = range.start + border(keys);
                 open.extend([border..range.end, range.start..border]);

@@ -1,16 +1,13 @@
 //! References in the order of a curve: keys of their codes and places, sorted.
 
 use super::radix::sorted;
-use super::subtree::{Parent, Subtree, task_child};
+use super::subtree::{Parent, Subtree, TASK_SIZE, task_child};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
 use crate::tree::MAX_DEPTH;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
-
-/// References in a task at the most.
-const TASK_SIZE: usize = 4096;
 
 const _: () = assert!(MAX_DEPTH <= u64::BITS as usize);
 

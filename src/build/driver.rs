@@ -14,17 +14,13 @@ use super::divide::{Rules, Set};
 use super::heuristic::{Heuristic, codes};
 use super::linear;
 use super::reference::{PrimRef, bounds};
-use super::subtree::{Parent, Subtree, join, task_child};
+use super::subtree::{Parent, Subtree, TASK_SIZE, join, task_child};
 use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
 use crate::tree::Tree;
 use alloc::vec;
 use alloc::vec::Vec;
-
-/// References in a task at the most: small enough to keep threads evenly busy, large enough to
-/// make handing out work free.
-const TASK_SIZE: usize = 4096;
 
 /// A set of references that is to become a subtree.
 struct OpenNode<'r, S> {

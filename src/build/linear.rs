@@ -19,7 +19,7 @@ use crate::tree::{Child, Node};
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// References lie in the input's order: how many before one's turn it is asked for.
+/// How many references before one's turn it is asked for.
 const AHEAD: usize = 32;
 
 /// The subtree over references, as many as there are codes, and at least one, no deeper than `depth`, in which there is
@@ -90,7 +90,7 @@ impl<S: Scalar> Order<'_, S> {
         let start = subtree.nodes.len();
         for first in (0..keys.len()).rev() {
             if let Some(ahead) = first.checked_sub(AHEAD) {
-                prefetch(core::ptr::from_ref(self.reference(&keys[ahead])).cast(), size_of::<PrimRef<S>>());
+                self.ask_for(&keys[ahead]);
             }
             let mut part = Part { keys: first..first + 1, root: None };
             let on_the_left = difference(keys, first);
@@ -153,5 +153,11 @@ impl<S: Scalar> Order<'_, S> {
 
     pub fn reference(&self, key: &u64) -> &PrimRef<S> {
         &self.references[self.curve.place(*key)]
+    }
+
+    /// Asks for a reference to be brought into the cache: they lie in the input's order.
+    #[inline(always)]
+    pub fn ask_for(&self, key: &u64) {
+        prefetch(core::ptr::from_ref(self.reference(key)).cast(), size_of::<PrimRef<S>>());
     }
 }

@@ -7,6 +7,10 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
+/// References in a task at the most: small enough to keep threads evenly busy, large enough to
+/// make handing out work free.
+pub(super) const TASK_SIZE: usize = 4096;
+
 /// Nodes with the child that refers to the first of them, and the indices in the slots of their leaves.
 pub(super) struct Subtree<S> {
     pub nodes: Vec<Node<S>>,
