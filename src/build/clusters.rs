@@ -17,9 +17,11 @@
 //! no better in six ways of mixing them.
 
 use super::curve::{Curve, border};
+use super::divide::Rules;
 use super::heuristic::codes;
-use super::linear::Order;
-use super::reference::PrimRef;
+use super::linear::{Order, Root};
+use super::reference::{PrimRef, bounds};
+use super::runs::Cutter;
 use super::subtree::{Piece, Subtree, TASK_SIZE, join, task_child};
 use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
@@ -49,11 +51,11 @@ const AHEAD: usize = 64;
 
 /// The tree over references, at least one, in clusters of up to `size`, which `split` makes a tree of: one whose leaves
 /// are single clusters.
-pub(super) fn build<S: Scalar>(
+pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
     references: &[PrimRef<S>],
     scene: &Aabb<S>,
     size: usize,
-    max_leaf_size: usize,
+    rules: &Rules<'_, H>,
     watch: &Watch<'_>,
     split: impl FnOnce(Vec<PrimRef<S>>) -> Subtree<S>,
 ) -> Subtree<S> {
@@ -61,23 +63,26 @@ pub(super) fn build<S: Scalar>(
     let size = size.min(TASK_SIZE);
     let curve = Curve::new(&codes(references, scene), MAX_DEPTH);
     let (_, tasks) = curve.divide::<S>();
-    let order = Order { references, curve: &curve, max_leaf_size };
+    let order = Order { references, curve: &curve, max_leaf_size: rules.max_leaf_size };
     let scale = scene.area_scale();
+    let cutter = Cutter::new(rules.max_runs, rules.block_size, scale);
     let area = |aabb: &Aabb<S>| aabb.scaled_half_area(scale).to_f64();
     let share = area(scene) / references.len() as f64;
-    let is_cluster = |keys: &[u64]| {
-        let count = keys.len() as f64;
-        if count < 2.0 || area(&order.bounds(keys)) <= LARGEST * share * count {
-            return true;
+    // The box of what is to be a cluster.
+    let cluster = |row: &[PrimRef<S>]| {
+        let (count, aabb) = (row.len() as f64, bounds(row));
+        if count < 2.0 || area(&aabb) <= LARGEST * share * count {
+            return Some(aabb);
         }
-        let areas = keys.iter().map(|key| area(&order.reference(key).aabb));
+        let areas = row.iter().map(|reference| area(&reference.aabb));
         let (sum, squares) =
             areas.fold((0.0, 0.0), |(sum, squares), area| (sum + area, squares + area * area));
-        sum * sum >= EVEN * count * squares
+        (sum * sum >= EVEN * count * squares).then_some(aabb)
     };
     let tasks = parallel::map(tasks, |task: Range<usize>| {
         let mut built = Subtree::with_capacity(task.len() / 4, task.len());
         let (mut clusters, mut open, mut parts) = (Vec::new(), vec![task], Vec::with_capacity(MAX_DEPTH + 1));
+        let (mut row, mut last) = (Vec::with_capacity(size), Vec::with_capacity(size));
         if watch.ask() == Pace::Stop {
             return (built, clusters);
         }
@@ -85,28 +90,43 @@ pub(super) fn build<S: Scalar>(
             let keys = &curve.keys[range.clone()];
             // Those of the next cluster.
             curve.keys[range.end..].iter().take(size.min(AHEAD)).for_each(|key| order.ask_for(key));
-            if keys.len() > size || !is_cluster(keys) {
+            row.clear();
+            if keys.len() <= size {
+                row.extend(keys.iter().map(|key| *order.reference(key)));
+            }
+            let Some(aabb) = cluster(&row).filter(|_| !row.is_empty()) else {
                 let border = range.start + border(keys);
                 open.extend([border..range.end, range.start..border]);
                 continue;
-            }
-            let begin = (built.nodes.len(), built.indices.len());
-            let mut root = order.build(keys, &mut built, &mut parts);
-            if root.height > DEPTH {
-                built.nodes.truncate(begin.0);
-                built.indices.truncate(begin.1);
-                root = order.build(&curve.in_a_row(keys), &mut built, &mut parts);
-            }
-            clusters.push((begin.0..built.nodes.len(), begin.1..built.indices.len(), root));
+            };
+            let begin = [built.nodes.len(), built.indices.len(), built.runs.len()];
+            let root = if keys.len() <= rules.max_leaf_size * rules.max_runs {
+                if keys.len() > rules.max_leaf_size {
+                    cutter.cut(&row, &aabb, &mut last, &mut built.runs);
+                }
+                built.indices.extend(row.iter().map(|reference| reference.index));
+                Root { child: Child::leaf(0..row.len()), aabb, height: 0 }
+            } else {
+                let root = order.build(keys, &mut built, &mut parts);
+                if root.height > DEPTH {
+                    built.nodes.truncate(begin[0]);
+                    built.indices.truncate(begin[1]);
+                    order.build(&curve.in_a_row(keys), &mut built, &mut parts)
+                } else {
+                    root
+                }
+            };
+            clusters.push((begin, [built.nodes.len(), built.indices.len(), built.runs.len()], root));
         }
         (built, clusters)
     });
     let clusters = tasks.iter().flat_map(|(built, clusters)| {
-        clusters.iter().map(|(nodes, slots, root)| {
+        clusters.iter().map(|(begin, end, root)| {
             let piece = Piece {
-                nodes: &built.nodes[nodes.clone()],
+                nodes: &built.nodes[begin[0]..end[0]],
                 root: root.child,
-                indices: &built.indices[slots.clone()],
+                indices: &built.indices[begin[1]..end[1]],
+                runs: &built.runs[begin[2]..end[2]],
             };
             (piece, root.aabb)
         })
@@ -117,7 +137,7 @@ pub(super) fn build<S: Scalar>(
         return Subtree::with_capacity(0, 0);
     }
     let clusters = (0..).zip(boxes).map(|(number, aabb)| PrimRef::new(aabb, number)).collect();
-    let Subtree { mut nodes, root, indices } = split(clusters);
+    let Subtree { mut nodes, root, indices, .. } = split(clusters);
     let moved = |child: Child| match indices.get(child.slots()) {
         Some(&[cluster]) if child.is_leaf() => task_child(cluster as usize),
         _ => child,
@@ -125,5 +145,5 @@ pub(super) fn build<S: Scalar>(
     for node in &mut nodes {
         node.children = node.children.map(moved);
     }
-    join(Subtree { nodes, root: moved(root), indices: Vec::new() }, &subtrees)
+    join(Subtree { nodes, root: moved(root), ..Subtree::with_capacity(0, 0) }, &subtrees)
 }

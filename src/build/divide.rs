@@ -9,6 +9,8 @@ use crate::geometry::{Aabb, Axis, Scalar};
 pub(crate) struct Rules<'h, H: ?Sized> {
     pub heuristic: &'h H,
     pub max_leaf_size: usize,
+    /// Into how many leaves the layout divides one of neighbours along a curve.
+    pub max_runs: usize,
     pub block_size: usize,
     /// [`MAX_DEPTH`](crate::MAX_DEPTH), or less where something goes below.
     pub max_depth: usize,
@@ -174,8 +176,13 @@ mod tests {
     fn middle(split: Split<f32>, n: u32, depth: usize) -> Option<usize> {
         let mut references = references(n, |i| (i * 7 % n) as f32);
         let aabb = bounds(&references);
-        let rules =
-            Rules { heuristic: &Always(split), max_leaf_size: 4, block_size: 1, max_depth: MAX_DEPTH };
+        let rules = Rules {
+            heuristic: &Always(split),
+            max_leaf_size: 4,
+            max_runs: 1,
+            block_size: 1,
+            max_depth: MAX_DEPTH,
+        };
         let len = references.len();
         let sides = Set { memory: &mut references, len, aabb, depth }.divide(&rules, &aabb).ok()?;
         for side in &sides {

@@ -57,8 +57,8 @@ pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
     if watch.ask() == Pace::Stop {
         return None;
     }
-    let Subtree { nodes, root, indices } = whole;
-    Some(Tree { nodes, root, aabb, indices, primitives })
+    let Subtree { nodes, root, indices, runs } = whole;
+    Some(Tree { nodes, root, aabb, indices, runs, primitives })
 }
 
 /// As the heuristic wants it: by codes, by splits of clusters, or by splits.
@@ -80,10 +80,10 @@ fn build_whole<S: Scalar, H: Heuristic<S> + ?Sized>(
     if size < 2 {
         return build_by_splits(references, aabb, rules, watch);
     }
-    let below = Rules { heuristic: rules.heuristic, max_leaf_size: 1, block_size: 1, max_depth: SPLIT_DEPTH };
-    clusters::build(&references, &aabb, size, rules.max_leaf_size, watch, |clusters| {
+    let above = Rules { max_leaf_size: 1, block_size: 1, max_depth: SPLIT_DEPTH, ..*rules };
+    clusters::build(&references, &aabb, size, rules, watch, |clusters| {
         watch.begin(clusters.len());
-        build_by_splits(clusters, aabb, &below, watch)
+        build_by_splits(clusters, aabb, &above, watch)
     })
 }
 

@@ -19,6 +19,7 @@ mod linear;
 mod optimise;
 mod radix;
 mod reference;
+mod runs;
 mod subtree;
 mod watch;
 

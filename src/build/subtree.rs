@@ -2,7 +2,7 @@
 
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
-use crate::tree::{Child, Node};
+use crate::tree::{Child, Node, Run};
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -16,6 +16,8 @@ pub(super) struct Subtree<S> {
     pub nodes: Vec<Node<S>>,
     pub root: Child,
     pub indices: Vec<u32>,
+    /// Parts of large leaves, in the order of the slots.
+    pub runs: Vec<Run<S>>,
 }
 
 /// A subtree that lies among others.
@@ -24,6 +26,7 @@ pub(super) struct Piece<'s, S> {
     pub nodes: &'s [Node<S>],
     pub root: Child,
     pub indices: &'s [u32],
+    pub runs: &'s [Run<S>],
 }
 
 /// The inner node and the side that refers to a child; none for the root.
@@ -35,6 +38,7 @@ impl<S: Scalar> Subtree<S> {
             nodes: Vec::with_capacity(nodes),
             root: Child::default(),
             indices: Vec::with_capacity(indices),
+            runs: Vec::new(),
         }
     }
 
@@ -47,7 +51,7 @@ impl<S: Scalar> Subtree<S> {
 
     /// All of it.
     pub fn all(&self) -> Piece<'_, S> {
-        Piece { nodes: &self.nodes, root: self.root, indices: &self.indices }
+        Piece { nodes: &self.nodes, root: self.root, indices: &self.indices, runs: &self.runs }
     }
 
     /// Makes an inner node above children with these boxes, and tells its number.
@@ -82,12 +86,14 @@ pub(super) fn task_of<S>(child: Child, top: &Subtree<S>) -> Option<usize> {
 pub(super) fn join<S: Scalar>(mut top: Subtree<S>, subtrees: &[Piece<'_, S>]) -> Subtree<S> {
     // Which nodes and slots follow one another, and by how much those of subtrees move.
     let (mut nodes, mut slots) = (Vec::<(Range<usize>, Option<usize>, Move)>::new(), Vec::<&[u32]>::new());
+    let mut runs = Vec::new();
     let mut end = Move { node: 0, slot: 0 };
     let mut open = vec![(None, top.root)];
     while let Some((parent, child)) = open.pop() {
         let moved = if let Some(task) = task_of(child, &top) {
-            let Piece { nodes: inner, root, indices } = subtrees[task];
+            let Piece { nodes: inner, root, indices, runs: parts } = subtrees[task];
             let root = end.of(root);
+            runs.extend(parts.iter().map(|run| Run { leaf: end.of(run.leaf), ..*run }));
             nodes.push((0..inner.len(), Some(task), end));
             slots.push(indices);
             end = Move { node: end.node + inner.len() as u32, slot: end.slot + indices.len() as u32 };
@@ -106,7 +112,7 @@ pub(super) fn join<S: Scalar>(mut top: Subtree<S>, subtrees: &[Piece<'_, S>]) ->
         nodes.map(move |node| Node { children: node.children.map(|child| by.of(child)), ..*node })
     });
     let indices = parallel::concat(slots.into_iter().map(|slots| slots.iter().copied()).collect());
-    Subtree { nodes: parallel::concat(parts.collect()), root: top.root, indices }
+    Subtree { nodes: parallel::concat(parts.collect()), root: top.root, indices, runs }
 }
 
 /// By how much numbers of nodes and of slots grow.

@@ -258,8 +258,13 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     ) -> Result<(L, Vec<u32>), BuildError> {
         let References { valid, skipped } = self.references(primitives)?;
         let block_size = L::BLOCK_SIZE;
-        let max_leaf_size = self.max_leaf_size.unwrap_or(block_size.max(4));
-        let rules = Rules { heuristic: &self.heuristic, max_leaf_size, block_size, max_depth: MAX_DEPTH };
+        let rules = Rules {
+            heuristic: &self.heuristic,
+            max_leaf_size: self.max_leaf_size.unwrap_or(block_size.max(4)),
+            max_runs: if self.max_leaf_size.is_none() { L::RUNS } else { 1 },
+            block_size,
+            max_depth: MAX_DEPTH,
+        };
         let watch = Watch::new(pace);
         let mut tree = build_tree(valid, &rules, &watch).ok_or(BuildError::Stopped)?;
         let optimise = self.optimise.or_else(|| self.heuristic.optimise());

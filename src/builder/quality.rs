@@ -44,7 +44,7 @@ impl<S: Scalar> Heuristic<S> for Quality {
 
     fn cluster_size(&self) -> usize {
         match self {
-            Self::Fast => 64,
+            Self::Fast => 128,
             Self::Balanced | Self::High => 1,
         }
     }

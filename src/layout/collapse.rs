@@ -214,9 +214,22 @@ impl<S: Scalar> Section<S> {
             }
             roots.clear();
             if child.is_leaf() {
-                parts((child, aabb), contents, &plan.tree.indices, N, &mut roots);
+                parts((child, aabb), contents, plan.tree, N, &mut roots);
             } else {
                 roots_of(child.first as usize, &mut roots);
+                while let Some(place) = (0..roots.len())
+                    .filter(|&place| {
+                        let (root, _) = roots[place];
+                        root.is_leaf() && root.count as usize > LEAF_WIDTH && {
+                            let runs = plan.tree.runs(root).len();
+                            runs > 0 && roots.len() - 1 + runs <= N
+                        }
+                    })
+                    .max_by(|&a, &b| plan.area(&roots[a].1).total_cmp(&plan.area(&roots[b].1)))
+                {
+                    let root = roots.swap_remove(place);
+                    parts(root, contents, plan.tree, N, &mut roots);
+                }
             }
             // The child to begin with in the highest lane: from there it is taken first if any hit will do.
             roots.sort_by_cached_key(|(_, aabb)| plan.area(aabb).to_ordered_bits());
@@ -296,16 +309,22 @@ fn put_leaf<S: Scalar>(
 fn parts<S: Scalar>(
     (leaf, within): (Child, Aabb<S>),
     contents: &impl Contents<S>,
-    indices: &[u32],
+    tree: &Tree<S>,
     n: usize,
     roots: &mut Vec<(Child, Aabb<S>)>,
 ) {
+    // Of primitives that are in several leaves, no more than is in this one.
+    let cut = |aabb: Aabb<S>| Some(aabb.intersection(within)).filter(|cut| !cut.is_empty()).unwrap_or(aabb);
+    let runs = tree.runs(leaf);
+    if (1..=n).contains(&runs.len()) {
+        roots.extend(runs.iter().map(|run| (run.leaf, cut(run.aabb))));
+        return;
+    }
     let slots = leaf.slots();
     let size = slots.len().div_ceil(n).max(LEAF_WIDTH);
     for first in slots.clone().step_by(size) {
         let part = first..(first + size).min(slots.end);
-        let aabb = part.clone().fold(Aabb::EMPTY, |aabb, slot| aabb.union(contents.aabb(indices[slot])));
-        // Of primitives that are in several leaves, no more than was in this one.
-        roots.push((Child::leaf(part), aabb.intersection(within)));
+        let aabb = part.clone().fold(Aabb::EMPTY, |aabb, slot| aabb.union(contents.aabb(tree.indices[slot])));
+        roots.push((Child::leaf(part), cut(aabb)));
     }
 }

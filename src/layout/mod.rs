@@ -29,6 +29,10 @@ pub trait Layout<P: Primitive>: Outline<P::Scalar> + Send + Sized {
     #[doc(hidden)]
     const BLOCK_SIZE: usize;
 
+    /// Into how many leaves it divides a large one of the tree that has runs.
+    #[doc(hidden)]
+    const RUNS: usize;
+
     /// Lays out a tree over the primitives with its indices.
     #[doc(hidden)]
     fn lay_out(tree: Tree<P::Scalar>, primitives: &[P]) -> Option<Self>;
@@ -94,6 +98,7 @@ impl<S: Scalar> Outline<S> for Tree<S> {
 
 impl<P: Primitive> Layout<P> for Tree<P::Scalar> {
     const BLOCK_SIZE: usize = 1;
+    const RUNS: usize = 1;
 
     fn lay_out(tree: Self, _: &[P]) -> Option<Self> {
         Some(tree)
@@ -138,6 +143,7 @@ where
 {
     /// Where operands have to be gathered first, each counts.
     const BLOCK_SIZE: usize = if F::COPIES && <P::Leaf as Leaf<_, _>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
+    const RUNS: usize = N;
 
     fn lay_out(tree: Tree<P::Scalar>, primitives: &[P]) -> Option<Self> {
         Self::new(tree, &primitives)

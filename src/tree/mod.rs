@@ -59,6 +59,13 @@ impl Child {
     }
 }
 
+/// A part of a large leaf: a leaf by itself, and its box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Run<S> {
+    pub aabb: Aabb<S>,
+    pub leaf: Child,
+}
+
 impl<S: Scalar> Node<S> {
     pub fn aabb(&self, side: usize) -> Aabb<S> {
         Aabb { min: self.planes.map(|axis| axis[0][side]), max: self.planes.map(|axis| axis[1][side]) }
@@ -87,6 +94,8 @@ pub struct Tree<S = f32> {
     pub(crate) aabb: Aabb<S>,
     /// The input's index of each slot's primitive. Leaves are ranges of slots; a primitive may be in several.
     pub(crate) indices: Vec<u32>,
+    /// How large leaves are to be divided where a layout can do it: their parts, in the order of the slots.
+    pub(crate) runs: Vec<Run<S>>,
     /// How many there are.
     pub(crate) primitives: usize,
 }
@@ -131,7 +140,17 @@ impl<S: Scalar> Tree<S> {
 
     /// Bytes of the nodes and of the indices.
     pub fn memory_bytes(&self) -> usize {
-        size_of::<Node<S>>() * self.nodes.capacity() + size_of::<u32>() * self.indices.capacity()
+        size_of::<Node<S>>() * self.nodes.capacity()
+            + size_of::<u32>() * self.indices.capacity()
+            + size_of::<Run<S>>() * self.runs.capacity()
+    }
+
+    /// The parts of a leaf; none if it has no runs.
+    pub(crate) fn runs(&self, leaf: Child) -> &[Run<S>] {
+        let before = |place: usize| self.runs.partition_point(|run| (run.leaf.first as usize) < place);
+        let slots = leaf.slots();
+        let runs = &self.runs[before(slots.start)..];
+        &runs[..runs.iter().take_while(|run| (run.leaf.first as usize) < slots.end).count()]
     }
 
     /// The root, if the tree is not empty.

@@ -2,7 +2,7 @@
 
 use super::search::Move;
 use crate::geometry::{Aabb, Scalar};
-use crate::tree::{Child, MAX_DEPTH, Node, Tree};
+use crate::tree::{Child, MAX_DEPTH, Node, Run, Tree};
 use alloc::vec::Vec;
 
 /// A tree whose nodes, inner ones first, then leaves, know their parents, boxes and heights.
@@ -180,6 +180,7 @@ impl<S: Scalar> Linked<S> {
     pub fn write(&self, tree: &mut Tree<S>) {
         let mut nodes: Vec<Node<S>> = Vec::with_capacity(self.children.len());
         let mut indices = Vec::with_capacity(tree.indices.len());
+        let mut runs = Vec::with_capacity(tree.runs.len());
         let mut open: Vec<(Option<(usize, usize)>, u32)> = alloc::vec![(None, Self::ROOT)];
         while let Some((parent, node)) = open.pop() {
             let child = if let Some(children) = self.children(node) {
@@ -188,8 +189,10 @@ impl<S: Scalar> Linked<S> {
                 open.extend([1, 0].map(|side| (Some((index, side)), children[side])));
                 Child::inner(index)
             } else {
-                let slots = self.leaves[node as usize - self.children.len()].slots();
-                let first = indices.len();
+                let leaf = self.leaves[node as usize - self.children.len()];
+                let (slots, first) = (leaf.slots(), indices.len());
+                let moved = |child: Child| Child { first: child.first - leaf.first + first as u32, ..child };
+                runs.extend(tree.runs(leaf).iter().map(|run| Run { leaf: moved(run.leaf), ..*run }));
                 indices.extend_from_slice(&tree.indices[slots]);
                 Child::leaf(first..indices.len())
             };
@@ -197,7 +200,7 @@ impl<S: Scalar> Linked<S> {
                 nodes[parent].children[side] = child;
             }
         }
-        (tree.nodes, tree.indices) = (nodes, indices);
+        (tree.nodes, tree.indices, tree.runs) = (nodes, indices, runs);
     }
 }
 
