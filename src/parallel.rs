@@ -61,14 +61,26 @@ pub(crate) fn concat<T: Send, I: ExactSizeIterator<Item = T> + Send>(parts: Vec<
     let len = parts.iter().map(ExactSizeIterator::len).sum();
     let mut all = Vec::with_capacity(len);
     let mut rest: &mut [MaybeUninit<T>] = &mut all.spare_capacity_mut()[..len];
-    let places = parts.into_iter().map(|items| {
-        let (places, behind) = core::mem::take(&mut rest).split_at_mut(items.len());
+    // Parts may be of one item: several are written at a time.
+    let mut jobs: Vec<(&mut [MaybeUninit<T>], Vec<I>)> = Vec::new();
+    let mut parts = parts.into_iter().peekable();
+    while parts.peek().is_some() {
+        let (mut job, mut len) = (Vec::new(), 0);
+        while let Some(items) = parts.next_if(|_| len < FEW) {
+            len += items.len();
+            job.push(items);
+        }
+        let (places, behind) = core::mem::take(&mut rest).split_at_mut(len);
         rest = behind;
-        (places, items)
-    });
-    map(places.collect(), |(places, mut items)| {
-        for place in places {
-            place.write(items.next().expect("a part has as many items as it says"));
+        jobs.push((places, job));
+    }
+    map(jobs, |(mut places, job)| {
+        for mut items in job {
+            let (part, behind) = places.split_at_mut(items.len());
+            places = behind;
+            for place in part {
+                place.write(items.next().expect("a part has as many items as it says"));
+            }
         }
     });
     // SAFETY: the parts' places are all `len`, and each was written, or `map` would have panicked.
@@ -77,7 +89,6 @@ pub(crate) fn concat<T: Send, I: ExactSizeIterator<Item = T> + Send>(parts: Vec<
 }
 
 /// Items for which no other thread is woken.
-#[cfg(feature = "rayon")]
 const FEW: usize = 1 << 12;
 
 /// Runs `f` where [`map`] has `threads` threads; with `None`, those of the pool it is called in.

@@ -2,7 +2,7 @@
 
 use super::{BuildNode, Heuristic, Median, Split};
 use crate::build::reference::PrimRef;
-use crate::geometry::{Aabb, Scalar};
+use crate::geometry::{Aabb, Scalar, max, min};
 use crate::parallel;
 use alloc::vec::Vec;
 
@@ -50,8 +50,10 @@ impl<S: Scalar> Grid<S> {
     fn code(&self, reference: &PrimRef<S>) -> u64 {
         let center = reference.centroid();
         let coordinate = |axis: usize| {
-            let cell = ((center[axis] - self.origin[axis]) * self.scale[axis]).to_f64();
-            u64::from((cell as u32).min((1 << BITS) - 1))
+            let cell = (center[axis] - self.origin[axis]) * self.scale[axis];
+            let cell = min(max(cell, S::ZERO), S::from_count((1 << BITS) - 1));
+            // SAFETY: from 0, which NaN becomes, to the last cell.
+            u64::from(unsafe { cell.to_small_integer() } as u32)
         };
         spread(coordinate(0)) << 2 | spread(coordinate(1)) << 1 | spread(coordinate(2))
     }
