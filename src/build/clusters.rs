@@ -59,8 +59,9 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
     watch: &Watch<'_>,
     split: impl FnOnce(Vec<PrimRef<S>>) -> Subtree<S>,
 ) -> Subtree<S> {
-    // No cluster is in two tasks.
-    let size = size.min(TASK_SIZE);
+    // What the layout can divide, and in any case no cluster in two tasks.
+    let is_cut = rules.max_runs > 1;
+    let size = if is_cut { size.min(rules.max_leaf_size * rules.max_runs) } else { size.min(TASK_SIZE) };
     let curve = Curve::new(&codes(references, scene), MAX_DEPTH);
     let (_, tasks) = curve.divide::<S>();
     let order = Order { references, curve: &curve, max_leaf_size: rules.max_leaf_size };
@@ -100,7 +101,7 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
                 continue;
             };
             let begin = [built.nodes.len(), built.indices.len(), built.runs.len()];
-            let root = if keys.len() <= rules.max_leaf_size * rules.max_runs {
+            let root = if is_cut {
                 if keys.len() > rules.max_leaf_size {
                     cutter.cut(&row, &aabb, &mut last, &mut built.runs);
                 }

@@ -70,6 +70,13 @@ impl<S: Scalar> Aabb<S> {
         Self { min: [max(bx, ax), max(by, ay), max(bz, az)], max: [min(dx, cx), min(dy, cy), min(dz, cz)] }
     }
 
+    /// What of this box is inside of `other`, or all of it if nothing is.
+    #[inline]
+    pub(crate) fn within(self, other: Self) -> Self {
+        let inside = self.intersection(other);
+        if inside.is_empty() { self } else { inside }
+    }
+
     /// Holds no point.
     #[inline]
     pub fn is_empty(&self) -> bool {
