@@ -39,8 +39,8 @@ pub fn all(triangles: &[Triangle]) -> Vec<Way<'_>> {
     ways.extend(both(triangles, "median", Median));
     ways.extend(both(triangles, "midpoint", Midpoint));
     ways.extend(both(triangles, "Morton", Morton));
-    let clustered = Clustered { size: 64, heuristic: BinnedSah::new(16) };
-    ways.extend(both(triangles, "clusters of 64", clustered));
+    let clustered = Clustered { size: 128, heuristic: BinnedSah::new(16) };
+    ways.extend(both(triangles, "clusters of 128", clustered));
     for (name, bins) in [("binned 8", 8), ("binned 16", 16), ("binned 32", 32)] {
         ways.extend(both(triangles, name, BinnedSah::new(bins)));
     }

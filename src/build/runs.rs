@@ -7,8 +7,9 @@
 //! least(k) = min over n = 1..=8 of least(k - n) + area(those from k - n up to k) * blocks(n) + PRICE * area(all)
 //! ```
 //!
-//! A wide node above such leaves is about as good as what collapsing the curve's binary tree over the same neighbours gives: rays take
-//! 0.93 to 1.00 of the steps (six scenes), and it takes half of the time, since there is no such tree.
+//! A wide node above such leaves is nearly as good as what the collapse makes of the curve's binary tree over the same neighbours: rays
+//! take 3 % more steps in the mean over six scenes. There is no such tree to build, to plan or to arrange: 20 ms instead of 28 for
+//! all of a quick build of sponza.
 
 use super::reference::{PrimRef, bounds};
 use crate::geometry::{Aabb, Scalar};

@@ -16,7 +16,7 @@ use crate::geometry::Scalar;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Quality {
-    /// [`BinnedSah`] of 16 bins down to [clusters](crate::heuristic::Clustered) of up to 64 neighbours, a sorting below.
+    /// [`BinnedSah`] of 16 bins down to [clusters](crate::heuristic::Clustered) of up to 128 neighbours, a sorting below.
     Fast,
     /// [`BinnedSah`] of 16 bins, a hundredth reinserted 8 times.
     #[default]
