@@ -131,6 +131,8 @@ fn ceil_log2(n: usize) -> usize {
 ///
 /// Lomuto's scheme without a branch: what comes next changes places with the first on the right, and whether it stays
 /// there is added to the border. A branch would be mispredicted at every other reference.
+///
+/// Refused: the boxes of both sides in the same loop, instead of in one of their own (39 ms for 35).
 fn partition<S: Scalar>(references: &mut [PrimRef<S>], axis: Axis, position: S) -> usize {
     let mut middle = 0;
     for i in 0..references.len() {
