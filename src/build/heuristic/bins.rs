@@ -1,6 +1,7 @@
 //! Counting references into bins, and the cheapest plane between two bins.
 
 use super::Split;
+use super::grid::Grid;
 use crate::build::reference::{PrimRef, three};
 use crate::geometry::{Aabb, Axis, Scalar};
 use crate::simd::{Halves, Kernel, Lanes};
@@ -139,50 +140,12 @@ impl<S: Scalar, I: Simd, const N: usize> Filled<S, I, N> {
 
     #[inline(always)]
     fn count(&mut self, isa: I, grid: &Grid<S, I>, reference: &PrimRef<S>) {
-        let Grid { origin, scale, half, zero, last, used } = *grid;
-        let [min, max] = reference.corners::<I>(isa);
-        // An index is a subnormal number, with which computing is slow.
-        let max = max.where_else(used, zero);
-        // As `Aabb::center` rounds; and in this order a NaN, as in the fourth lane, becomes zero.
-        let bins = ((min * half + max * half - origin) * scale).max(zero).min(last);
-        let aabb = S::Times8::of_halves([zero - min, max]);
-        let [x, y, z] = three(bins);
-        // SAFETY: from 0 to the last bin.
-        let [x, y, z] = unsafe { [x.to_small_integer(), y.to_small_integer(), z.to_small_integer()] };
+        let [min, max] = grid.corners(isa, reference);
+        let aabb = S::Times8::of_halves([S::Times4::splat(isa, S::ZERO) - min, max]);
+        let [x, y, z] = grid.cells(min, max);
         self.add(0, x as usize % N, aabb, 1);
         self.add(1, y as usize % N, aabb, 1);
         self.add(2, z as usize % N, aabb, 1);
-    }
-}
-
-/// Where bins lie.
-#[derive(Clone, Copy)]
-struct Grid<S: Scalar, I: Simd> {
-    origin: S::Times4<I>,
-    /// Bins per unit of length.
-    scale: S::Times4<I>,
-    half: S::Times4<I>,
-    zero: S::Times4<I>,
-    last: S::Times4<I>,
-    /// The first three lanes.
-    used: <S::Times4<I> as Lanes<S>>::Mask,
-}
-
-impl<S: Scalar, I: Simd> Grid<S, I> {
-    #[inline(always)]
-    fn new(isa: I, [x, y, z]: [S; 3], [a, b, c]: [S; 3], count: usize) -> Self {
-        let zero = S::Times4::splat(isa, S::ZERO);
-        let four = [[x, y, z, S::ZERO], [a, b, c, S::ZERO], [S::ONE, S::ONE, S::ONE, S::ZERO]];
-        // SAFETY: four scalars each.
-        let [origin, scale, used] = unsafe {
-            [
-                S::Times4::load(isa, four[0].as_ptr()),
-                S::Times4::load(isa, four[1].as_ptr()),
-                S::Times4::load(isa, four[2].as_ptr()),
-            ]
-        };
-        let last = S::Times4::splat(isa, S::from_count(count as i32 - 1));
-        Self { origin, scale, half: S::Times4::splat(isa, S::HALF), zero, last, used: zero.lt(used) }
     }
 }
 

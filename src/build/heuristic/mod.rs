@@ -13,6 +13,7 @@
 mod binned_sah;
 mod bins;
 mod clustered;
+mod grid;
 mod median;
 mod midpoint;
 mod morton;

@@ -1,10 +1,13 @@
 //! Splits along a space-filling curve.
 
+use super::grid::Grid;
 use super::{BuildNode, Heuristic, Median, Split};
 use crate::build::reference::PrimRef;
-use crate::geometry::{Aabb, Scalar, max, min};
+use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
+use crate::simd::{Backend, Kernel};
 use alloc::vec::Vec;
+use fearless_simd::Simd;
 
 /// Sorts references once along Morton's curve, and splits where the highest bit changes (Lauterbach et al., Fast BVH
 /// Construction on GPUs, 2009: the linear hierarchy).
@@ -28,44 +31,61 @@ impl<S: Scalar> Heuristic<S> for Morton {
     }
 }
 
+/// References whose codes are computed at a time.
+const PART: usize = 1 << 12;
+
 /// Each reference's place on the curve through a box.
 pub(in crate::build) fn codes<S: Scalar>(references: &[PrimRef<S>], scene: &Aabb<S>) -> Vec<u64> {
-    let grid = Grid::new(scene);
-    parallel::collect(references, |_, reference| grid.code(reference))
+    let mut codes = alloc::vec![0; references.len()];
+    let parts = references.chunks(PART).zip(codes.chunks_mut(PART));
+    parallel::map(parts.collect(), |(references, codes)| {
+        Backend::best().run(Codes { references, scene, codes });
+    });
+    codes
 }
 
-/// Cells in a box.
-struct Grid<S> {
-    origin: [S; 3],
-    /// Cells per unit of length; 0 on an axis without extent.
-    scale: [S; 3],
+struct Codes<'r, S> {
+    references: &'r [PrimRef<S>],
+    scene: &'r Aabb<S>,
+    codes: &'r mut [u64],
 }
 
-impl<S: Scalar> Grid<S> {
-    fn new(scene: &Aabb<S>) -> Self {
-        Self { origin: scene.min, scale: scene.per_unit(1 << BITS) }
+impl<S: Scalar> Kernel for Codes<'_, S> {
+    const IS_WIDE: bool = true;
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: Simd>(self, isa: I) {
+        let grid = Grid::<S, I>::new(isa, self.scene.min, self.scene.per_unit(1 << BITS), 1 << BITS);
+        for (code, reference) in self.codes.iter_mut().zip(self.references) {
+            let [min, max] = grid.corners(isa, reference);
+            let [x, y, z] = grid.cells(min, max).map(|cell| spread(cell as u32));
+            *code = x << 2 | y << 1 | z;
+        }
     }
+}
 
-    /// The bits of the cell's three coordinates in turns.
-    fn code(&self, reference: &PrimRef<S>) -> u64 {
-        let center = reference.centroid();
-        let coordinate = |axis: usize| {
-            let cell = (center[axis] - self.origin[axis]) * self.scale[axis];
-            let cell = min(max(cell, S::ZERO), S::from_count((1 << BITS) - 1));
-            // SAFETY: from 0, which NaN becomes, to the last cell.
-            u64::from(unsafe { cell.to_small_integer() } as u32)
-        };
-        spread(coordinate(0)) << 2 | spread(coordinate(1)) << 1 | spread(coordinate(2))
+/// Two zeros before each of the lowest 16 bits: three numbers' bits in turns make a code.
+#[inline(always)]
+fn spread(bits: u32) -> u64 {
+    let [low, high] = [bits, bits >> 8].map(|byte| u64::from(SPREAD[byte as usize % SPREAD.len()]));
+    high << 24 | low
+}
+
+/// The same of a byte.
+const SPREAD: [u32; 256] = {
+    let mut table = [0; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        let mut bit = 0;
+        while bit < 8 {
+            table[byte] |= (byte as u32 >> bit & 1) << (3 * bit);
+            bit += 1;
+        }
+        byte += 1;
     }
-}
-
-/// Two zeros before each of the lowest 16 bits.
-fn spread(bits: u64) -> u64 {
-    let bits = (bits | bits << 16) & 0x0000_0000_ff00_00ff;
-    let bits = (bits | bits << 8) & 0x0000_00f0_0f00_f00f;
-    let bits = (bits | bits << 4) & 0x0000_0c30_c30c_30c3;
-    (bits | bits << 2) & 0x0000_2492_4924_9249
-}
+    table
+};
 
 #[cfg(test)]
 mod tests {
@@ -73,8 +93,8 @@ mod tests {
 
     #[test]
     fn bits_are_spread() {
-        for bits in [0u64, 1, 0b1011, 0x8001, 0xffff, 0x5a5a] {
-            let expected = (0..16).fold(0, |sum, k| sum | (bits >> k & 1) << (3 * k));
+        for bits in [0, 1, 0b1011, 0x8001, 0xffff, 0x5a5a] {
+            let expected = (0..16).fold(0, |sum, k| sum | u64::from(bits >> k & 1) << (3 * k));
             assert_eq!(spread(bits), expected, "{bits:x}");
         }
     }
