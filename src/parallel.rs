@@ -58,9 +58,9 @@ pub(crate) fn collect<T, R>(items: &[T], f: impl Fn(usize, &T) -> R) -> Vec<R> {
 /// # Panics
 /// If a part has fewer items than it says.
 pub(crate) fn concat<T: Send, I: ExactSizeIterator<Item = T> + Send>(parts: Vec<I>) -> Vec<T> {
-    let len = parts.iter().map(ExactSizeIterator::len).sum();
-    let mut all = Vec::with_capacity(len);
-    let mut rest: &mut [MaybeUninit<T>] = &mut all.spare_capacity_mut()[..len];
+    let all_len = parts.iter().map(ExactSizeIterator::len).sum();
+    let mut all = Vec::with_capacity(all_len);
+    let mut rest: &mut [MaybeUninit<T>] = &mut all.spare_capacity_mut()[..all_len];
     // Parts may be of one item: several are written at a time.
     let mut jobs: Vec<(&mut [MaybeUninit<T>], Vec<I>)> = Vec::new();
     let mut parts = parts.into_iter().peekable();
@@ -74,17 +74,15 @@ pub(crate) fn concat<T: Send, I: ExactSizeIterator<Item = T> + Send>(parts: Vec<
         rest = behind;
         jobs.push((places, job));
     }
-    map(jobs, |(mut places, job)| {
-        for mut items in job {
-            let (part, behind) = places.split_at_mut(items.len());
-            places = behind;
-            for place in part {
-                place.write(items.next().expect("a part has as many items as it says"));
-            }
+    assert!(rest.is_empty());
+    map(jobs, |(places, job)| {
+        let mut items = job.into_iter().flatten();
+        for place in places {
+            place.write(items.next().expect("a part has as many items as it says"));
         }
     });
-    // SAFETY: the parts' places are all `len`, and each was written, or `map` would have panicked.
-    unsafe { all.set_len(len) }
+    // SAFETY: the jobs' places are all, as was asserted, and each was written, or `map` would have panicked.
+    unsafe { all.set_len(all_len) }
     all
 }
 

@@ -32,6 +32,7 @@ use super::subtree::{Piece, Subtree, TASK_SIZE, join, task_child};
 use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
+use crate::primitive::LEAF_WIDTH;
 use crate::tree::{Child, MAX_DEPTH};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -65,7 +66,7 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
     watch: &Watch<'_>,
     split: impl FnOnce(Vec<PrimRef<S>>) -> Subtree<S>,
 ) -> Subtree<S> {
-    // What the layout can divide, and in any case no cluster in two tasks.
+    // Of a cluster that is cut, no more than the layout can divide; of one with a tree, no more than lie in one task.
     let is_cut = rules.max_runs > 1;
     let size = if is_cut { size.min(rules.max_leaf_size * rules.max_runs) } else { size.min(TASK_SIZE) };
     let curve = Curve::new(&codes(references, scene), MAX_DEPTH);
@@ -108,7 +109,7 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
             };
             let begin = [built.nodes.len(), built.indices.len(), built.runs.len()];
             let root = if is_cut {
-                if keys.len() > rules.max_leaf_size {
+                if keys.len() > LEAF_WIDTH {
                     cutter.cut(&row, &aabb, &mut last, &mut built.runs);
                 }
                 built.indices.extend(row.iter().map(|reference| reference.index));

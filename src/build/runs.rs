@@ -52,8 +52,13 @@ impl<S: Scalar> Cutter<S> {
             if ends(last).count() <= self.leaves {
                 break;
             }
-            // The dearer, the fewer.
+            // The dearer, the fewer. Where areas overflow no price is high enough: full leaves, then.
             price *= 4.0;
+            if S::from_f64(price) >= S::MAX {
+                last.clear();
+                last.extend((0..row.len()).map(|place| count(0, place % LEAF_WIDTH) as u8));
+                break;
+            }
         }
         let start = runs.len();
         for end in ends(last) {
@@ -215,5 +220,10 @@ mod tests {
         assert_eq!(lengths(&points, 16, 8).len(), 13);
         let huge = PrimRef::new(Aabb::new([-f32::MAX; 3], [f32::MAX; 3]), 0);
         assert!(lengths(&vec![huge; 100], 16, 8).len() <= 16);
+        // Areas that are no number, in a row that fills all leaves.
+        let point = |y: f32| PrimRef::new(Aabb::new([0.0, y, 0.0], [0.0, y, 0.0]), 0);
+        let mut row = vec![huge; 120];
+        row.extend((0..8).map(|k| point(if k == 0 { -f32::MAX } else { f32::MAX })));
+        assert_eq!(lengths(&row, 16, 8), [8; 16]);
     }
 }

@@ -166,7 +166,9 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// The largest number of primitives in a leaf of the binary tree: unless set, [`LEAF_WIDTH`](crate::LEAF_WIDTH), 8,
     /// where leaves have so many side by side, else 4; surface area heuristics make smaller ones where that pays. Any
     /// number from 1 on; above the number of primitives it means that number. A [`WideTree`] joins leaves where that is
-    /// cheaper, and divides larger ones: its own hold up to `LEAF_WIDTH`, whatever is set here.
+    /// cheaper, and divides larger ones: its own hold up to `LEAF_WIDTH`, whatever is set here. Unless it is set, a
+    /// [cluster](crate::heuristic::Clustered) is one leaf of the binary tree, which a wide tree makes a node of: setting it makes
+    /// quicker trees of clusters, more slowly.
     #[must_use]
     pub fn max_leaf_size(self, max_leaf_size: usize) -> Self {
         Self { max_leaf_size: Some(max_leaf_size), ..self }

@@ -9,6 +9,11 @@ use core::ops::Range;
 /// Bytes in a cache line.
 const LINE: usize = 64;
 
+/// Where lines may begin: of 8 bytes on every target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(8))]
+pub(super) struct Word(u64);
+
 /// Memory in which blocks of plain data lie: all of it initialised, with zeros between them.
 ///
 /// It is cleared block by block, just before each is written: clearing all at once, by the system or by the allocator, took 1 of the
@@ -19,14 +24,14 @@ const LINE: usize = 64;
 #[derive(Default)]
 pub(super) struct Blocks {
     /// One line more than there is room for, less a word: somewhere in them the first line begins.
-    words: Vec<u64>,
+    words: Vec<Word>,
     /// The first line's first word.
     first: usize,
     /// How many lines there are.
     lines: usize,
 }
 
-const WORDS: usize = LINE / size_of::<u64>();
+const WORDS: usize = LINE / size_of::<Word>();
 
 impl Blocks {
     /// Blocks begin at multiples of this many bytes.
@@ -36,25 +41,25 @@ impl Blocks {
     pub const ALIGN: usize = LINE;
 
     /// Parts that are written independently, each by `write`, which is told its number. They are `ranges` of bytes, which begin
-    /// with lines and follow one another from 0 on but for what is left of a line.
+    /// with lines and follow one another from 0 on but for what is left of a line. If all are empty, none is written.
     pub fn filled(ranges: &[Range<usize>], write: impl Fn(usize, &mut Part<'_>) + Sync + Send) -> Self {
         let lines = ranges.last().map_or(0, |last| last.end).div_ceil(LINE);
         if lines == 0 {
             return Self::default();
         }
         let len = lines * WORDS + WORDS - 1;
-        let mut words: Vec<u64> = Vec::with_capacity(len);
+        let mut words: Vec<Word> = Vec::with_capacity(len);
         let address = words.as_ptr().addr();
-        let first = (address.next_multiple_of(LINE) - address) / size_of::<u64>();
+        let first = (address.next_multiple_of(LINE) - address) / size_of::<Word>();
         let (before, rest) = words.spare_capacity_mut()[..len].split_at_mut(first);
         let (mut rest, behind) = rest.split_at_mut(lines * WORDS);
-        before.fill(MaybeUninit::new(0));
-        behind.fill(MaybeUninit::new(0));
+        before.fill(MaybeUninit::new(Word(0)));
+        behind.fill(MaybeUninit::new(Word(0)));
         let mut parts = Vec::with_capacity(ranges.len());
         let mut done = 0;
         for (number, range) in ranges.iter().enumerate() {
             let end = range.end.div_ceil(LINE) * WORDS;
-            assert!(range.start == done * size_of::<u64>() && end >= done);
+            assert!(range.start == done * size_of::<Word>() && end >= done);
             let (words, behind) = rest.split_at_mut(end - done);
             (rest, done) = (behind, end);
             parts.push((number, Part { words, clear: 0 }));
@@ -70,11 +75,11 @@ impl Blocks {
 
     /// Bytes of memory.
     pub fn bytes(&self) -> usize {
-        self.words.capacity() * size_of::<u64>()
+        self.words.capacity() * size_of::<Word>()
     }
 
     /// All lines' words, to be compared.
-    pub fn words(&self) -> &[u64] {
+    pub fn words(&self) -> &[Word] {
         &self.words[self.first..][..self.lines * WORDS]
     }
 
@@ -125,7 +130,7 @@ impl Clone for Blocks {
 
 /// A part of the memory, to be written.
 pub(super) struct Part<'m> {
-    words: &'m mut [MaybeUninit<u64>],
+    words: &'m mut [MaybeUninit<Word>],
     /// So many bytes at the begin are initialised.
     clear: usize,
 }
@@ -139,8 +144,8 @@ impl Part<'_> {
     /// # Panics
     /// If they are not inside of the part, or not aligned.
     pub unsafe fn get_mut<T>(&mut self, offset: usize, len: usize) -> &mut [T] {
-        let end = offset + len * size_of::<T>();
-        assert!(end <= size_of_val(self.words));
+        let end = size_of::<T>().checked_mul(len).and_then(|bytes| bytes.checked_add(offset));
+        let end = end.filter(|&end| end <= size_of_val(self.words)).expect("a block lies inside of its part");
         assert!(align_of::<T>() <= LINE && offset.is_multiple_of(align_of::<T>()));
         self.clear_to(end);
         // SAFETY: inside and aligned, as was just asked, and initialised; the bytes are a T by the caller's word.
@@ -176,7 +181,7 @@ mod tests {
             assert_eq!(places, [0]);
             places[0] = number as u8 + 1;
         });
-        let bytes: Vec<u8> = blocks.words().iter().flat_map(|word| word.to_ne_bytes()).collect();
+        let bytes: Vec<u8> = blocks.words().iter().flat_map(|word| word.0.to_ne_bytes()).collect();
         assert!(blocks.words().as_ptr().addr().is_multiple_of(LINE));
         let mut expected = alloc::vec![0; 384];
         (expected[0], expected[129], expected[323]) = (1, 2, 4);

@@ -163,9 +163,9 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
             let Section { start, blocks, children, .. } = &sections[number];
             let mut values = alloc::vec![S::ZERO; contents.operands()];
             let mut moved = Vec::with_capacity(N);
-            for (number, block) in blocks.iter().enumerate() {
+            for (place, block) in blocks.iter().enumerate() {
                 // Primitives lie in the input's order: waiting for them took half of the time.
-                if let Some(Block { what: What::Leaf(slots), .. }) = blocks.get(number + AHEAD) {
+                if let Some(Block { what: What::Leaf(slots), .. }) = blocks.get(place + AHEAD) {
                     tree.indices[slots.clone()].iter().for_each(|&index| contents.prefetch(index));
                 }
                 match &block.what {
@@ -331,7 +331,7 @@ fn sort_by_area<S: Scalar, const N: usize>(
     roots.extend(sorted.iter().map(|&(_, root)| root));
 }
 
-/// A leaf too large for one block, with its box, as at most `n` equal parts.
+/// A leaf too large for one block, with its box, as at most `n` parts: those that it was cut into, else equal ones.
 fn parts<S: Scalar>(
     (leaf, within): (Child, Aabb<S>),
     contents: &impl Contents<S>,
@@ -340,7 +340,8 @@ fn parts<S: Scalar>(
     roots: &mut Vec<(Child, Aabb<S>)>,
 ) {
     let runs = runs(tree, leaf, within);
-    if (1..=n).contains(&runs.len()) {
+    debug_assert!(runs.len() <= n);
+    if runs.len() > 0 {
         roots.extend(runs);
         return;
     }

@@ -25,17 +25,22 @@ pub struct Packed {
 
 /// An inner node.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
+#[repr(C, align(16))]
 pub struct WideNode<S, const N: usize> {
     /// By axis; minima, then maxima.
     planes: [[[S; N]; 2]; 3],
     children: [Reference; N],
 }
 
-const _: () = assert!(size_of::<WideNode<f32, 16>>() == 448 && size_of::<WideNode<f64, 16>>() == 832);
-const _: () = assert!(size_of::<WideNode<f32, 8>>() == 224 && size_of::<WideNode<f64, 8>>() == 416);
+/// Whether a node is its scalars and integers alone.
+const fn has_no_gaps<S: Scalar, const N: usize>() -> bool {
+    size_of::<WideNode<S, N>>() == N * (6 * size_of::<S>() + size_of::<Reference>())
+}
 
-// SAFETY: scalars and integers, without gaps.
+const _: () = assert!(has_no_gaps::<f32, 4>() && has_no_gaps::<f32, 8>() && has_no_gaps::<f32, 16>());
+const _: () = assert!(has_no_gaps::<f64, 4>() && has_no_gaps::<f64, 8>() && has_no_gaps::<f64, 16>());
+
+// SAFETY: scalars and integers, without gaps: of the widths that there are, see above.
 unsafe impl<S: Scalar, const N: usize> Node<S, N> for WideNode<S, N> {
     /// Rows of planes that are as long as a line begin with one.
     const ALIGN: usize = if size_of::<[S; N]>() >= 64 { 64 } else { 32 };

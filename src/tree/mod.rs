@@ -94,7 +94,7 @@ pub struct Tree<S = f32> {
     pub(crate) aabb: Aabb<S>,
     /// The input's index of each slot's primitive. Leaves are ranges of slots; a primitive may be in several.
     pub(crate) indices: Vec<u32>,
-    /// How large leaves are to be divided where a layout can do it: their parts, in the order of the slots.
+    /// The parts that large leaves are cut into, for a layout that can divide them; in the order of the slots.
     pub(crate) runs: Vec<Run<S>>,
     /// How many there are.
     pub(crate) primitives: usize,
@@ -138,7 +138,7 @@ impl<S: Scalar> Tree<S> {
         TreeReport::new(self)
     }
 
-    /// Bytes of the nodes and of the indices.
+    /// Bytes of the nodes, of the indices, and of what a layout is to know of large leaves.
     pub fn memory_bytes(&self) -> usize {
         size_of::<Node<S>>() * self.nodes.capacity()
             + size_of::<u32>() * self.indices.capacity()
