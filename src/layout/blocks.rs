@@ -1,5 +1,6 @@
 //! Nodes and leaves of different sizes, one after another in line-aligned memory.
 
+use crate::memory;
 use crate::parallel;
 use crate::simd::prefetch;
 use alloc::vec::Vec;
@@ -18,9 +19,6 @@ pub(super) struct Word(u64);
 ///
 /// It is cleared block by block, just before each is written: clearing all at once, by the system or by the allocator, took 1 of the
 /// 21 ms of a quick build of sponza, and on the calling thread a tenth of a build on two.
-///
-/// In pages of any size: asking the system for pages of 2 MiB (`madvise`) for this and the build's buffers made first builds in
-/// a process quicker by an eighth or slower by a third, with the state of the machine, and rays quicker by 1 %.
 #[derive(Default)]
 pub(super) struct Blocks {
     /// One line more than there is room for, less a word: somewhere in them the first line begins.
@@ -48,7 +46,7 @@ impl Blocks {
             return Self::default();
         }
         let len = lines * WORDS + WORDS - 1;
-        let mut words: Vec<Word> = Vec::with_capacity(len);
+        let mut words: Vec<Word> = memory::with_capacity(len);
         let address = words.as_ptr().addr();
         let first = (address.next_multiple_of(LINE) - address) / size_of::<Word>();
         let (before, rest) = words.spare_capacity_mut()[..len].split_at_mut(first);
