@@ -74,7 +74,6 @@ mod builder;
 mod bvh;
 mod geometry;
 mod layout;
-mod memory;
 mod parallel;
 mod primitive;
 mod query;

@@ -1,6 +1,5 @@
 //! The one place that knows of threads. Results never depend on their number.
 
-use crate::memory;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
@@ -45,9 +44,7 @@ pub(crate) fn collect<T: Sync, R: Send>(items: &[T], f: impl Fn(usize, &T) -> R 
     if items.len() < FEW {
         return items.iter().enumerate().map(made).collect();
     }
-    let mut all = memory::with_capacity(items.len());
-    items.par_iter().enumerate().with_min_len(FEW).map(made).collect_into_vec(&mut all);
-    all
+    items.par_iter().enumerate().with_min_len(FEW).map(made).collect()
 }
 
 /// What `f` makes of each item and its number.
@@ -62,7 +59,7 @@ pub(crate) fn collect<T, R>(items: &[T], f: impl Fn(usize, &T) -> R) -> Vec<R> {
 /// If a part has fewer items than it says.
 pub(crate) fn concat<T: Send, I: ExactSizeIterator<Item = T> + Send>(parts: Vec<I>) -> Vec<T> {
     let all_len = parts.iter().map(ExactSizeIterator::len).sum();
-    let mut all = memory::with_capacity(all_len);
+    let mut all = Vec::with_capacity(all_len);
     let mut rest: &mut [MaybeUninit<T>] = &mut all.spare_capacity_mut()[..all_len];
     // Parts may be of one item: several are written at a time.
     let mut jobs: Vec<(&mut [MaybeUninit<T>], Vec<I>)> = Vec::new();

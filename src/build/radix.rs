@@ -1,7 +1,7 @@
 //! Sorting of codes.
 
-use crate::memory;
 use crate::parallel;
+use alloc::vec;
 use alloc::vec::Vec;
 
 /// Bits in a digit: the places of 2,048 digits fit the first cache.
@@ -20,7 +20,7 @@ pub(super) fn sorted(mut keys: Vec<u64>, low: u32, high: u32) -> Vec<u64> {
         return keys;
     }
     let top = high.saturating_sub(DIGIT).max(low);
-    let mut buckets = memory::filled(0, keys.len());
+    let mut buckets = vec![0; keys.len()];
     let mut ends = scatter(&keys, &mut buckets, top);
     if top > low {
         let (mut sources, mut targets) = (buckets.as_mut_slice(), keys.as_mut_slice());

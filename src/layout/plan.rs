@@ -14,7 +14,6 @@
 //! ```
 
 use crate::geometry::{Aabb, Scalar};
-use crate::memory;
 use crate::parallel;
 use crate::primitive::LEAF_WIDTH;
 use crate::tree::{Child, MAX_DEPTH, Tree};
@@ -69,7 +68,7 @@ struct Weight<const N: usize> {
 impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
     pub fn new(tree: &'t Tree<S>, leaf: LeafCost) -> Self {
         let unknown = Weight { forest: [0.0; N], roots: 0, slots: (0, 0) };
-        let mut weights = memory::filled(unknown, tree.nodes.len());
+        let mut weights = alloc::vec![unknown; tree.nodes.len()];
         let plan = Self { tree, weights: Vec::new(), scale: tree.aabb.area_scale(), leaf };
         let (top, subtrees) = plan.divide();
         let (mut parts, mut rest, mut done) = (Vec::with_capacity(subtrees.len()), weights.as_mut_slice(), 0);

@@ -4,7 +4,6 @@ use super::grid::Grid;
 use super::{BuildNode, Heuristic, Median, Split};
 use crate::build::reference::PrimRef;
 use crate::geometry::{Aabb, Scalar};
-use crate::memory;
 use crate::parallel;
 use crate::simd::{Backend, Kernel};
 use alloc::vec::Vec;
@@ -37,7 +36,7 @@ const PART: usize = 1 << 12;
 
 /// Each reference's place on the curve through a box.
 pub(in crate::build) fn codes<S: Scalar>(references: &[PrimRef<S>], scene: &Aabb<S>) -> Vec<u64> {
-    let mut codes = memory::filled(0, references.len());
+    let mut codes = alloc::vec![0; references.len()];
     let parts = references.chunks(PART).zip(codes.chunks_mut(PART));
     parallel::map(parts.collect(), |(references, codes)| {
         Backend::best().run(Codes { references, scene, codes });
