@@ -98,4 +98,15 @@ mod tests {
             assert_eq!(spread(bits), expected, "{bits:x}");
         }
     }
+
+    #[test]
+    fn codes_go_from_the_boxs_one_corner_to_the_other() {
+        let scene = Aabb::new([-1.0, 2.0, 0.0], [3.0, 2.5, 9.0]);
+        let at = |point: [f32; 3]| PrimRef::new(Aabb::new(point, point), u32::MAX);
+        let corners = [at(scene.min), at(scene.center()), at(scene.max)];
+        // Of each coordinate, the highest bit and no other; all bits.
+        assert_eq!(codes(&corners, &scene), [0, 0b111 << 45, (1 << 48) - 1]);
+        let flat = Aabb::new([5.0; 3], [5.0; 3]);
+        assert_eq!(codes(&[at([5.0; 3])], &flat), [0]);
+    }
 }
