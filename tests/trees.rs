@@ -254,6 +254,25 @@ fn clusters_below_a_long_path_keep_the_depth_bound() {
     assert_answers(&converging(), Bvh::builder().quality(Quality::Fast));
 }
 
+/// Wherever a cluster goes: below other nodes, or into two leaves with a part of its box each.
+#[test]
+fn clusters_keep_the_leaves_that_they_were_cut_into() {
+    let triangles = triangles(6_000);
+    let optimise = Optimise { share: 0.3, rounds: 4 };
+    let plain = Bvh::builder().quality(Quality::Fast).build(&triangles).unwrap().report();
+    let moved = Bvh::builder().quality(Quality::Fast).optimise(optimise).build(&triangles).unwrap();
+    moved.check().unwrap();
+    assert!(moved.report().sah_cost < plain.sah_cost);
+    // Small clusters may be joined to one leaf, here and there; cut anew, all leaves would be full.
+    assert!(plain.leaf_sizes.mean < 7.0);
+    assert!((moved.report().leaf_sizes.mean - plain.leaf_sizes.mean).abs() < 0.1);
+    let split = Clustered { size: 100, heuristic: SpatialSah { growth: 1.0, ..SpatialSah::default() } };
+    for builder in [Bvh::builder().heuristic(split), Bvh::builder().heuristic(split).optimise(optimise)] {
+        assert_answers(&triangles, builder);
+    }
+    assert_answers(&triangles, Bvh::builder().quality(Quality::Fast).optimise(optimise));
+}
+
 /// Codes of these numbers of bits, as many as references and more.
 struct Coded(fn(usize) -> u64, usize);
 
