@@ -76,7 +76,7 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
     let cutter = Cutter::new(rules.max_runs, rules.block_size, scale);
     let area = |aabb: &Aabb<S>| aabb.scaled_half_area(scale).to_f64();
     let share = area(scene) / references.len() as f64;
-    // The box of what is to be a cluster.
+    // Its box, if it is to be a cluster.
     let cluster = |row: &[PrimRef<S>]| {
         let (count, aabb) = (row.len() as f64, bounds(row));
         if count < 2.0 || area(&aabb) <= LARGEST * share * count {
@@ -98,11 +98,12 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
             let keys = &curve.keys[range.clone()];
             // Those of the next cluster.
             curve.keys[range.end..].iter().take(size.min(AHEAD)).for_each(|key| order.ask_for(key));
-            row.clear();
-            if keys.len() <= size {
+            let is_few = keys.len() <= size;
+            if is_few {
+                row.clear();
                 row.extend(keys.iter().map(|key| *order.reference(key)));
             }
-            let Some(aabb) = cluster(&row).filter(|_| !row.is_empty()) else {
+            let Some(aabb) = is_few.then(|| cluster(&row)).flatten() else {
                 let border = range.start + border(keys);
                 open.extend([border..range.end, range.start..border]);
                 continue;

@@ -12,7 +12,7 @@
 //! all of a quick build of sponza.
 
 use super::reference::{PrimRef, bounds};
-use crate::geometry::{Aabb, Scalar};
+use crate::geometry::{Aabb, Scalar, min};
 use crate::primitive::LEAF_WIDTH;
 use crate::simd::{Backend, Halves, Kernel, Lanes};
 use crate::tree::{Child, Run};
@@ -27,29 +27,29 @@ pub(super) struct Cutter<S> {
     /// As for [`Aabb::scaled_half_area`].
     scale: S,
     /// At the most.
-    leaves: usize,
+    max_runs: usize,
     /// What a visit costs, by place in turns of eight, and by the leaf's first place in such turns.
     costs: [[S; LEAF_WIDTH]; LEAF_WIDTH],
 }
 
 impl<S: Scalar> Cutter<S> {
-    /// Of at most so many leaves, with tests of `block_size` at once.
-    pub fn new(leaves: usize, block_size: usize, scale: S) -> Self {
+    /// Into at most so many leaves, with tests of `block_size` at once.
+    pub fn new(max_runs: usize, block_size: usize, scale: S) -> Self {
         let cost = |count: usize| S::from_count(count.div_ceil(block_size) as i32);
         let costs = core::array::from_fn(|end| core::array::from_fn(|start| cost(count(start, end))));
-        Self { scale, leaves, costs }
+        Self { scale, max_runs, costs }
     }
 
-    /// Appends the leaves of a row, with slots that are counted from its begin. The row is not empty, there is room for it in as many leaves, and
-    /// all lie in `aabb`. `last` is memory.
+    /// Appends the leaves of a row, with slots that are counted from its begin. The row is not empty, not more than so many leaves
+    /// have room for, and lies in `aabb`. `last` is memory.
     pub fn cut(&self, row: &[PrimRef<S>], aabb: &Aabb<S>, last: &mut Vec<u8>, runs: &mut Vec<Run<S>>) {
-        debug_assert!((1..=self.leaves * LEAF_WIDTH).contains(&row.len()));
+        debug_assert!((1..=self.max_runs * LEAF_WIDTH).contains(&row.len()));
         // Not nothing, so that few leaves are cheaper than many even where all are points.
         let mut price = PRICE * aabb.scaled_half_area(self.scale).to_f64() + f64::from(f32::MIN_POSITIVE);
         let backend = Backend::best();
         loop {
             backend.run(Cut { cutter: self, row, price: S::from_f64(price), last });
-            if ends(last).count() <= self.leaves {
+            if ends(last).count() <= self.max_runs {
                 break;
             }
             // The dearer, the fewer. Where areas overflow no price is high enough: full leaves, then.
@@ -104,7 +104,7 @@ impl<S: Scalar> Kernel for Cut<'_, S> {
         let turns: [_; LEAF_WIDTH] = core::array::from_fn(only);
         let scale = splat(self.cutter.scale);
 
-        let (mut min, mut max) = ([splat(S::INFINITY); 3], [splat(S::NEG_INFINITY); 3]);
+        let (mut mins, mut maxs) = ([splat(S::INFINITY); 3], [splat(S::NEG_INFINITY); 3]);
         // The least cost of all before the leaf.
         let mut before = splat(S::INFINITY);
         let mut least = S::ZERO;
@@ -114,19 +114,18 @@ impl<S: Scalar> Kernel for Cut<'_, S> {
             let begins = turns[end];
             for axis in 0..3 {
                 let (low, high) = (splat(reference.aabb.min[axis]), splat(reference.aabb.max[axis]));
-                min[axis] = low.where_else(begins, low.min(min[axis]));
-                max[axis] = high.where_else(begins, high.max(max[axis]));
+                mins[axis] = low.where_else(begins, low.min(mins[axis]));
+                maxs[axis] = high.where_else(begins, high.max(maxs[axis]));
             }
             before = splat(least).where_else(begins, before);
-            let x = (max[0] - min[0]) * scale;
-            let y = (max[1] - min[1]) * scale;
-            let z = (max[2] - min[2]) * scale;
+            let x = (maxs[0] - mins[0]) * scale;
+            let y = (maxs[1] - mins[1]) * scale;
+            let z = (maxs[2] - mins[2]) * scale;
             let costs = before + (x * y + y * z + z * x) * load(&self.cutter.costs[end]);
             let [first, second] = costs.to_halves();
             let mut four = [S::ZERO; 4];
             first.min(second).store(&mut four);
-            let lower = |a: S, b: S| if a < b { a } else { b };
-            let lowest = lower(lower(four[0], four[1]), lower(four[2], four[3]));
+            let lowest = min(min(four[0], four[1]), min(four[2], four[3]));
             let lane = S::Times8::<I>::bits(costs.le(splat(lowest))).trailing_zeros() as usize;
             // No more than there are, even where areas overflow.
             self.last.push(count(lane % LEAF_WIDTH, end).min(place + 1) as u8);
@@ -139,6 +138,8 @@ impl<S: Scalar> Kernel for Cut<'_, S> {
 mod tests {
     use super::*;
     use alloc::vec;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
 
     fn at(x: f32) -> PrimRef {
         PrimRef::new(Aabb::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]), 0)
@@ -168,11 +169,8 @@ mod tests {
     /// The least of all ways to cut.
     #[test]
     fn no_other_cut_is_cheaper() {
-        let mut state = 7u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / (1 << 24) as f32
-        };
+        let mut rng = Pcg64Mcg::seed_from_u64(7);
+        let mut random = || rng.random::<f32>();
         for block_size in [1, 8] {
             for _ in 0..50 {
                 let row: Vec<_> = (0..10)

@@ -300,6 +300,7 @@ fn dissolve<S: Scalar, const N: usize>(roots: &mut Vec<(Child, Aabb<S>)>, plan: 
             (runs > 0 && roots.len() - 1 + runs <= N).then_some((place, plan.area(&roots[place].1)))
         };
         let leaves = roots.iter().map(|&(root, _)| root).enumerate();
+        // A run is found as the only one of itself: it is not to be replaced again.
         let large = leaves.filter(|(_, root)| root.is_leaf() && root.count as usize > LEAF_WIDTH);
         let largest = large.filter_map(|leaf| fits(&leaf)).max_by(|(_, a), (_, b)| a.total_cmp(b));
         let Some((place, _)) = largest else { return };

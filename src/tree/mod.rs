@@ -147,10 +147,9 @@ impl<S: Scalar> Tree<S> {
 
     /// The parts of a leaf; none if it has no runs.
     pub(crate) fn runs(&self, leaf: Child) -> &[Run<S>] {
-        let before = |place: usize| self.runs.partition_point(|run| (run.leaf.first as usize) < place);
+        let runs = &self.runs[self.runs.partition_point(|run| run.leaf.first < leaf.first)..];
         let slots = leaf.slots();
-        let runs = &self.runs[before(slots.start)..];
-        &runs[..runs.iter().take_while(|run| (run.leaf.first as usize) < slots.end).count()]
+        &runs[..runs.iter().take_while(|run| slots.contains(&(run.leaf.first as usize))).count()]
     }
 
     /// The root, if the tree is not empty.

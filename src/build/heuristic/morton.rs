@@ -3,6 +3,7 @@
 use super::grid::Grid;
 use super::{BuildNode, Heuristic, Median, Split};
 use crate::build::reference::PrimRef;
+use crate::build::subtree::TASK_SIZE;
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
 use crate::simd::{Backend, Kernel};
@@ -31,13 +32,10 @@ impl<S: Scalar> Heuristic<S> for Morton {
     }
 }
 
-/// References whose codes are computed at a time.
-const PART: usize = 1 << 12;
-
 /// Each reference's place on the curve through a box.
 pub(in crate::build) fn codes<S: Scalar>(references: &[PrimRef<S>], scene: &Aabb<S>) -> Vec<u64> {
     let mut codes = alloc::vec![0; references.len()];
-    let parts = references.chunks(PART).zip(codes.chunks_mut(PART));
+    let parts = references.chunks(TASK_SIZE).zip(codes.chunks_mut(TASK_SIZE));
     parallel::map(parts.collect(), |(references, codes)| {
         Backend::best().run(Codes { references, scene, codes });
     });

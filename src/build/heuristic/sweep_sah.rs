@@ -117,15 +117,14 @@ fn best_count<S: Scalar>(references: &[PrimRef<S>], axis: Axis, scale: S, memory
 mod tests {
     use super::*;
     use crate::build::reference::bounds;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
 
     #[test]
     fn the_split_is_the_cheapest_of_all() {
         // Pseudo-random boxes; every split on every axis is priced by brute force.
-        let mut state = 1u32;
-        let mut next = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) as f32 / (1 << 24) as f32
-        };
+        let mut rng = Pcg64Mcg::seed_from_u64(1);
+        let mut next = || rng.random::<f32>();
         let references: Vec<PrimRef> = (0..40)
             .map(|index| {
                 let min = [next() * 9.0, next() * 5.0, next() * 7.0];
