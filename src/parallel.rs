@@ -53,6 +53,22 @@ pub(crate) fn collect<T, R>(items: &[T], f: impl Fn(usize, &T) -> R) -> Vec<R> {
     items.iter().enumerate().map(|(index, item)| f(index, item)).collect()
 }
 
+/// Changes each item, by its number.
+#[cfg(feature = "rayon")]
+pub(crate) fn for_each<T: Send>(items: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
+    use rayon::prelude::*;
+    if items.len() < FEW {
+        return items.iter_mut().enumerate().for_each(|(index, item)| f(index, item));
+    }
+    items.par_iter_mut().enumerate().with_min_len(FEW).for_each(|(index, item)| f(index, item));
+}
+
+/// Changes each item, by its number.
+#[cfg(not(feature = "rayon"))]
+pub(crate) fn for_each<T>(items: &mut [T], f: impl Fn(usize, &mut T)) {
+    items.iter_mut().enumerate().for_each(|(index, item)| f(index, item));
+}
+
 /// The items of all parts, one after another.
 ///
 /// # Panics

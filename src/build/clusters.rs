@@ -69,7 +69,7 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
     // Of a cluster that is cut, no more than the layout can divide; of one with a tree, no more than lie in one task.
     let is_cut = rules.max_runs > 1;
     let size = if is_cut { size.min(rules.max_leaf_size * rules.max_runs) } else { size.min(TASK_SIZE) };
-    let curve = Curve::new(&codes(references, scene), MAX_DEPTH);
+    let curve = Curve::new(codes(references, scene), MAX_DEPTH);
     let (_, tasks) = curve.divide::<S>();
     let order = Order { references, curve: &curve, max_leaf_size: rules.max_leaf_size };
     let scale = scene.area_scale();

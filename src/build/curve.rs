@@ -21,13 +21,15 @@ pub(super) struct Curve {
 impl Curve {
     /// Of at least one code. Keys have `bits` at the most: codes lose their lowest if they have too many. Not fewer than
     /// places take.
-    pub fn new(codes: &[u64], bits: usize) -> Self {
+    pub fn new(codes: Vec<u64>, bits: usize) -> Self {
         let place_bits = usize::BITS - (codes.len() - 1).leading_zeros();
         let code_bits = u64::BITS - codes.iter().fold(0, |all, code| all | code).leading_zeros();
         let lost = (code_bits + place_bits).saturating_sub(bits as u32);
-        let key = |place, code: &u64| (code >> lost).unbounded_shl(place_bits) | place as u64;
-        let keys = sorted(parallel::collect(codes, key), place_bits, place_bits + code_bits - lost);
-        Self { keys, place: (1 << place_bits) - 1 }
+        let mut keys = codes;
+        parallel::for_each(&mut keys, |place, code| {
+            *code = (*code >> lost).unbounded_shl(place_bits) | place as u64;
+        });
+        Self { keys: sorted(keys, place_bits, place_bits + code_bits - lost), place: (1 << place_bits) - 1 }
     }
 
     /// The place of a key's reference.

@@ -74,7 +74,7 @@ fn build_whole<S: Scalar, H: Heuristic<S> + ?Sized>(
     watch.begin(references.len());
     let codes = rules.heuristic.codes(&references, &aabb);
     if let Some(codes) = codes.filter(|codes| codes.len() == references.len()) {
-        return linear::build(&references, &codes, rules.max_depth, rules.max_leaf_size, watch);
+        return linear::build(&references, codes, rules.max_depth, rules.max_leaf_size, watch);
     }
     let size = rules.heuristic.cluster_size();
     if size < 2 {
@@ -146,7 +146,7 @@ fn build_subtree<S: Scalar, H: Heuristic<S> + ?Sized>(
         Pace::Hurry => {
             let codes = codes(root.references(), scene);
             let depth = rules.max_depth - root.depth;
-            return linear::build(root.references(), &codes, depth, rules.max_leaf_size, watch);
+            return linear::build(root.references(), codes, depth, rules.max_leaf_size, watch);
         }
         Pace::Stop => return Subtree::with_capacity(0, 0),
     }

@@ -26,7 +26,7 @@ const AHEAD: usize = 32;
 /// room for as many.
 pub(super) fn build<S: Scalar>(
     references: &[PrimRef<S>],
-    codes: &[u64],
+    codes: Vec<u64>,
     depth: usize,
     max_leaf_size: usize,
     watch: &Watch<'_>,

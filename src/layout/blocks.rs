@@ -156,6 +156,23 @@ impl Part<'_> {
         }
     }
 
+    /// Writes what lies at an offset.
+    ///
+    /// # Safety
+    /// A `T` is any bytes.
+    ///
+    /// # Panics
+    /// If it is not inside of the part, or not aligned.
+    pub unsafe fn put<T>(&mut self, offset: usize, value: T) {
+        let end = size_of::<T>().checked_add(offset);
+        let end = end.filter(|&end| end <= size_of_val(self.words)).expect("a block lies inside of its part");
+        assert!(align_of::<T>() <= LINE && offset.is_multiple_of(align_of::<T>()));
+        self.clear_to(offset);
+        // SAFETY: inside and aligned, as was just asked.
+        unsafe { self.words.as_mut_ptr().cast::<u8>().add(offset).cast::<T>().write(value) }
+        self.clear = self.clear.max(end);
+    }
+
     /// Initialises all up to `end`, which is inside of the part, with zeros where nothing was.
     fn clear_to(&mut self, end: usize) {
         debug_assert!(end <= size_of_val(self.words));

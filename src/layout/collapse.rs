@@ -15,8 +15,8 @@ use core::ops::Range;
 pub(crate) trait Contents<S>: Sync {
     /// How many scalars of each primitive.
     fn operands(&self) -> usize;
-    /// Writes them, for the primitive with an input index.
-    fn put(&self, index: u32, operands: &mut [S]);
+    /// Writes them, for primitives with these input indices, a row for each: a lane for each primitive, NaN in the others.
+    fn put(&self, indices: &[u32], rows: &mut [[S; LEAF_WIDTH]]);
     /// The box of the primitive with an input index.
     fn aabb(&self, index: u32) -> Aabb<S>;
     /// Asks for the primitive with an input index to be brought into the cache.
@@ -112,7 +112,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         roots_of: impl Fn(usize, &mut Vec<(Child, Aabb<S>)>) + Sync,
         contents: &impl Contents<S>,
     ) -> Result<Arrangement<S>, Failure> {
-        let mut top = Section::new();
+        let mut top = Section::with_capacity(0);
         let Some(child) = plan.tree.root() else {
             return Ok(Arrangement { sections: Vec::new(), root: None });
         };
@@ -134,7 +134,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         }
         let places: Vec<_> = subtrees.iter().map(|subtree| subtree.place).collect();
         let arranged = parallel::map(subtrees, |subtree| {
-            let mut section = Section::new();
+            let mut section = Section::with_capacity(plan.slots(subtree.child).0 as usize / 4);
             let root = Open { place: None, ..subtree };
             section.grow::<F, N>(root, plan, &roots_of, contents, Some).map(|()| section)
         });
@@ -161,7 +161,6 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
             sections.iter().map(|section| section.start..section.start + section.bytes).collect();
         Blocks::filled(&ranges, |number, part| {
             let Section { start, blocks, children, .. } = &sections[number];
-            let mut values = alloc::vec![S::ZERO; contents.operands()];
             let mut moved = Vec::with_capacity(N);
             for (place, block) in blocks.iter().enumerate() {
                 // Primitives lie in the input's order: waiting for them took half of the time.
@@ -177,11 +176,11 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
                         }));
                         let node = F::Node::new(&moved);
                         // SAFETY: nodes are plain data.
-                        unsafe { part.get_mut(block.offset, 1)[0] = node }
+                        unsafe { part.put(block.offset, node) }
                     }
                     What::Leaf(slots) => {
                         let indices = &tree.indices[slots.clone()];
-                        put_leaf(part, block.offset, indices, contents, &mut values);
+                        put_leaf(part, block.offset, indices, contents);
                     }
                 }
             }
@@ -190,8 +189,10 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
 }
 
 impl<S: Scalar> Section<S> {
-    fn new() -> Self {
-        Self { start: 0, bytes: 0, blocks: Vec::new(), children: Vec::new() }
+    /// With room for so many blocks.
+    fn with_capacity(blocks: usize) -> Self {
+        let (blocks, children) = (Vec::with_capacity(blocks), Vec::with_capacity(blocks));
+        Self { start: 0, bytes: 0, blocks, children }
     }
 
     /// Decides where the blocks below a node lie: the node, its leaves, then its inner children depth first, but for
@@ -205,7 +206,8 @@ impl<S: Scalar> Section<S> {
         mut takes: impl FnMut(Open<S>) -> Option<Open<S>>,
     ) -> Result<(), Failure> {
         let mut open = alloc::vec![root];
-        let (mut roots, mut sorted) = (Vec::with_capacity(N), Vec::with_capacity(N));
+        let (mut roots, mut sorted, mut keys) =
+            (Vec::with_capacity(N), Vec::with_capacity(N), Vec::with_capacity(N));
         while let Some(Open { child, aabb, place, depth, pending }) = open.pop() {
             if depth > MAX_DEPTH || pending > MAX_PENDING {
                 return Err(Failure::TooDeep);
@@ -218,14 +220,14 @@ impl<S: Scalar> Section<S> {
                 dissolve(&mut roots, plan);
             }
             // The child to begin with in the highest lane: from there it is taken first if any hit will do.
-            sort_by_area(&mut roots, plan, &mut sorted);
+            sort_by_area(&roots, plan, &mut keys, &mut sorted);
             let first = self.children.len();
             let offset =
                 self.allocate(What::Node(first..first + roots.len()), size_of::<F::Node>(), F::Node::ALIGN);
             if let Some(place) = place {
                 self.children[place].1 = Reference::node(offset);
             }
-            for &(child, aabb) in &roots {
+            for &(child, aabb) in &sorted {
                 let reference = if plan.is_leaf(child, &aabb) {
                     self.leaf::<F, N>(plan.slots(child), contents.operands())?
                 } else {
@@ -266,29 +268,14 @@ impl<S: Scalar> Section<S> {
 }
 
 /// Writes a leaf: the rows of operands, NaN where there is no primitive, then the indices.
-fn put_leaf<S: Scalar>(
-    part: &mut Part<'_>,
-    offset: usize,
-    indices: &[u32],
-    contents: &impl Contents<S>,
-    values: &mut [S],
-) {
+fn put_leaf<S: Scalar>(part: &mut Part<'_>, offset: usize, indices: &[u32], contents: &impl Contents<S>) {
+    let operands = contents.operands();
     // SAFETY: scalars are any bytes, and any bytes are some.
-    let rows: &mut [[S; LEAF_WIDTH]] = unsafe { part.get_mut(offset, values.len()) };
-    for (lane, &index) in indices.iter().enumerate() {
-        contents.put(index, values);
-        for (row, &value) in rows.iter_mut().zip(values.iter()) {
-            row[lane] = value;
-        }
-    }
-    for row in rows.iter_mut() {
-        row[indices.len()..].fill(S::from_f64(f64::NAN));
-    }
-    let behind = offset + values.len() * size_of::<[S; LEAF_WIDTH]>();
-    // SAFETY: integers are any bytes, and any bytes are some.
-    let places: &mut [u32] = unsafe { part.get_mut(behind, LEAF_WIDTH) };
+    contents.put(indices, unsafe { part.get_mut(offset, operands) });
+    let mut places = [NOBODY; LEAF_WIDTH];
     places[..indices.len()].copy_from_slice(indices);
-    places[indices.len()..].fill(NOBODY);
+    // SAFETY: integers are any bytes, and any bytes are some.
+    unsafe { part.put(offset + operands * size_of::<[S; LEAF_WIDTH]>(), places) }
 }
 
 /// Puts the runs of large leaves in their places, the largest leaf's first, while there is room in the node: a step less for each
@@ -296,8 +283,13 @@ fn put_leaf<S: Scalar>(
 fn dissolve<S: Scalar, const N: usize>(roots: &mut Vec<(Child, Aabb<S>)>, plan: &Plan<'_, S, N>) {
     loop {
         let fits = |&(place, leaf): &(usize, Child)| {
-            let runs = plan.tree.runs(leaf).len();
-            (runs > 0 && roots.len() - 1 + runs <= N).then_some((place, plan.area(&roots[place].1)))
+            // No fewer than full ones would be, and to look for them takes time.
+            let has_room = |runs: usize| roots.len() - 1 + runs <= N;
+            let fits = has_room(leaf.count.div_ceil(LEAF_WIDTH as u32) as usize) && {
+                let runs = plan.tree.runs(leaf).len();
+                runs > 0 && has_room(runs)
+            };
+            fits.then(|| (place, plan.area(&roots[place].1)))
         };
         let leaves = roots.iter().map(|&(root, _)| root).enumerate();
         // A run is found as the only one of itself: it is not to be replaced again.
@@ -318,18 +310,20 @@ fn runs<S: Scalar>(
     tree.runs(leaf).iter().map(move |run| (run.leaf, run.aabb.within(within)))
 }
 
-/// Puts the smallest first. `sorted` is memory.
+/// The same roots, the smallest first, in `sorted`. `keys` is memory.
 fn sort_by_area<S: Scalar, const N: usize>(
-    roots: &mut Vec<(Child, Aabb<S>)>,
+    roots: &[(Child, Aabb<S>)],
     plan: &Plan<'_, S, N>,
-    sorted: &mut Vec<(u64, (Child, Aabb<S>))>,
+    keys: &mut Vec<u64>,
+    sorted: &mut Vec<(Child, Aabb<S>)>,
 ) {
+    keys.clear();
+    // Equal ones in their order.
+    let key = |(place, (_, aabb)): (u64, &(Child, Aabb<S>))| plan.area(aabb).to_ordered_bits() << 32 | place;
+    keys.extend((0..).zip(roots).map(key));
+    keys.sort_unstable();
     sorted.clear();
-    sorted.extend(roots.iter().map(|&(child, aabb)| (plan.area(&aabb).to_ordered_bits(), (child, aabb))));
-    // Stable.
-    sorted.sort_by_key(|&(area, _)| area);
-    roots.clear();
-    roots.extend(sorted.iter().map(|&(_, root)| root));
+    sorted.extend(keys.iter().map(|&key| roots[key as u32 as usize]));
 }
 
 /// A leaf too large for one block, with its box, as at most `n` parts: those that it was cut into, else equal ones.
