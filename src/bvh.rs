@@ -2,9 +2,9 @@
 
 use crate::build::heuristic::Heuristic;
 use crate::build::{Gain, Optimise};
-use crate::builder::{BuildError, Builder, Quality};
+use crate::builder::{BuildError, Builder, Quality, Workspace};
 use crate::geometry::{Aabb, Ray};
-use crate::layout::{Layout, WideTree};
+use crate::layout::{Buffers, Layout, WideTree};
 use crate::primitive::{Corners, Intersect, Primitive};
 use crate::query::{Any, Ask, Closest, Counters, Hit, Hits, Recorder, Traverse, ask_all};
 use crate::simd::{Backend, InstructionSet};
@@ -111,6 +111,14 @@ impl<P: Primitive, L: Layout<P>> Bvh<P, L> {
         &self.skipped
     }
 
+    /// Leaves the hierarchy's memory to the next that is [built in](Builder::build_in) the workspace, and gives the primitives
+    /// back, in the order of the input, skipped ones included: to be moved, say, and built again.
+    pub fn recycle(self, workspace: &mut Workspace<P::Scalar>) -> Vec<P> {
+        let tree = self.layout.recycle(&mut workspace.layout);
+        workspace.build.reclaim(tree);
+        self.primitives
+    }
+
     /// The hierarchy without its primitives, to be compared with another.
     pub fn layout(&self) -> &L {
         &self.layout
@@ -210,8 +218,9 @@ impl<P: Primitive> Bvh<P, Tree<P::Scalar>> {
     /// # Errors
     /// [`BuildError::TooLarge`].
     pub fn into_layout<L: Layout<P>>(self) -> Result<Bvh<P, L>, BuildError> {
-        let Self { layout, backend, primitives, skipped } = self;
-        let layout = L::lay_out(layout, &primitives).ok_or(BuildError::TooLarge)?;
+        let Self { layout: mut tree, backend, primitives, skipped } = self;
+        let layout =
+            L::lay_out(&mut tree, &primitives, &mut Buffers::default()).ok_or(BuildError::TooLarge)?;
         Ok(Bvh { layout, backend, primitives, skipped })
     }
 }

@@ -88,7 +88,7 @@ struct Readme;
 
 pub use build::heuristic;
 pub use build::{Flaw, Gain, Optimise, Pace, PrimRef};
-pub use builder::{BuildError, Builder, OnInvalid, Quality};
+pub use builder::{BuildError, Builder, OnInvalid, Quality, Workspace};
 pub use bvh::Bvh;
 pub use geometry::{Aabb, Axis, PreparedRay, Ray, RayError, Scalar};
 pub use layout::{CompactTree, Layout, WideTree};

@@ -36,21 +36,27 @@ pub(crate) fn map<T, R>(items: Vec<T>, f: impl Fn(T) -> R) -> Vec<R> {
     items.into_iter().map(f).collect()
 }
 
-/// What `f` makes of each item and its number.
+/// What `f` makes of each item and its number, in place of what was collected before.
 #[cfg(feature = "rayon")]
-pub(crate) fn collect<T: Sync, R: Send>(items: &[T], f: impl Fn(usize, &T) -> R + Sync) -> Vec<R> {
+pub(crate) fn collect<T: Sync, R: Send>(
+    items: &[T],
+    collected: &mut Vec<R>,
+    f: impl Fn(usize, &T) -> R + Sync,
+) {
     use rayon::prelude::*;
     let made = |(index, item)| f(index, item);
     if items.len() < FEW {
-        return items.iter().enumerate().map(made).collect();
+        collected.clear();
+        return collected.extend(items.iter().enumerate().map(made));
     }
-    items.par_iter().enumerate().with_min_len(FEW).map(made).collect()
+    items.par_iter().enumerate().with_min_len(FEW).map(made).collect_into_vec(collected);
 }
 
-/// What `f` makes of each item and its number.
+/// What `f` makes of each item and its number, in place of what was collected before.
 #[cfg(not(feature = "rayon"))]
-pub(crate) fn collect<T, R>(items: &[T], f: impl Fn(usize, &T) -> R) -> Vec<R> {
-    items.iter().enumerate().map(|(index, item)| f(index, item)).collect()
+pub(crate) fn collect<T, R>(items: &[T], collected: &mut Vec<R>, f: impl Fn(usize, &T) -> R) {
+    collected.clear();
+    collected.extend(items.iter().enumerate().map(|(index, item)| f(index, item)));
 }
 
 /// Changes each item, by its number.
@@ -69,13 +75,17 @@ pub(crate) fn for_each<T>(items: &mut [T], f: impl Fn(usize, &mut T)) {
     items.iter_mut().enumerate().for_each(|(index, item)| f(index, item));
 }
 
-/// The items of all parts, one after another.
+/// The items of all parts, one after another, in memory for as many.
 ///
 /// # Panics
-/// If a part has fewer items than it says.
-pub(crate) fn concat<T: Send, I: ExactSizeIterator<Item = T> + Send>(parts: Vec<I>) -> Vec<T> {
+/// If a part has fewer items than it says, or there is less memory.
+pub(crate) fn concat<T: Send, I: ExactSizeIterator<Item = T> + Send>(
+    parts: Vec<I>,
+    memory: impl FnOnce(usize) -> Vec<T>,
+) -> Vec<T> {
     let all_len = parts.iter().map(ExactSizeIterator::len).sum();
-    let mut all = Vec::with_capacity(all_len);
+    let mut all = memory(all_len);
+    all.clear();
     let mut rest: &mut [MaybeUninit<T>] = &mut all.spare_capacity_mut()[..all_len];
     // Parts may be of one item: several are written at a time.
     let mut jobs: Vec<(&mut [MaybeUninit<T>], Vec<I>)> = Vec::new();

@@ -44,7 +44,7 @@ impl Scene {
         let per_triangle = |bytes: usize| bytes as f64 / self.triangles.len() as f64;
         let [one, all] = pools.each_ref().map(|pool| {
             let triangles = self.triangles.clone();
-            let (built, peak) = pool.install(|| peak(|| (method.build)(triangles)));
+            let (built, peak) = pool.install(|| peak(|| method.build(triangles)));
             built.check(&what);
             assert_exact(&what, &self.rays, &self.naive, &built.answers(&self.rays));
             (built.report(), built.bytes(), per_triangle(peak))

@@ -2,7 +2,9 @@
 
 use crate::agreement::{Answers, bare};
 use bvhkit::heuristic::{Heuristic, SpatialSah};
-use bvhkit::{Builder, Bvh, CompactTree, Fast, Quality, Ray, Traverse, Tree, TreeReport, Triangle, WideTree};
+use bvhkit::{
+    Builder, Bvh, CompactTree, Fast, Quality, Ray, Traverse, Tree, TreeReport, Triangle, WideTree, Workspace,
+};
 
 /// The mode that has the least to do beside the build.
 pub type Item = Fast<Triangle>;
@@ -11,8 +13,22 @@ pub type Item = Fast<Triangle>;
 pub struct Method {
     pub layout: &'static str,
     pub preset: &'static str,
+    build: Box<Build>,
+}
+
+/// In memory that others left, if there is any.
+type Build = dyn Fn(Option<&mut Workspace>, Vec<Item>) -> Box<dyn Built> + Sync;
+
+impl Method {
     /// Keeps the list, so that what it allocates is all beside the triangles.
-    pub build: Box<dyn Fn(Vec<Item>) -> Box<dyn Built> + Sync>,
+    pub fn build(&self, triangles: Vec<Item>) -> Box<dyn Built> {
+        (self.build)(None, triangles)
+    }
+
+    /// The same in memory that others left.
+    pub fn build_in(&self, workspace: &mut Workspace, triangles: Vec<Item>) -> Box<dyn Built> {
+        (self.build)(Some(workspace), triangles)
+    }
 }
 
 /// The default layout's first, and of each layout the default preset second.
@@ -36,8 +52,13 @@ where
     H: Heuristic<f32> + Clone + 'static,
     L: Traverse<Item> + 'static,
 {
-    let build = move |triangles| -> Box<dyn Built> {
-        Box::new(builder.clone().build(triangles).expect("the coordinates are finite"))
+    let build = move |workspace: Option<&mut Workspace>, triangles| -> Box<dyn Built> {
+        let builder = builder.clone();
+        let built = match workspace {
+            Some(workspace) => builder.build_in(workspace, triangles),
+            None => builder.build(triangles),
+        };
+        Box::new(built.expect("the coordinates are finite"))
     };
     Method { layout, preset, build: Box::new(build) }
 }
@@ -51,6 +72,8 @@ pub trait Built: Send {
     fn report(&self) -> TreeReport;
     /// With the triangles.
     fn bytes(&self) -> usize;
+    /// Gives the triangles back.
+    fn recycle(self: Box<Self>, workspace: &mut Workspace) -> Vec<Item>;
 }
 
 impl<L: Traverse<Item>> Built for Bvh<Item, L> {
@@ -68,5 +91,8 @@ impl<L: Traverse<Item>> Built for Bvh<Item, L> {
     }
     fn bytes(&self) -> usize {
         self.memory_bytes()
+    }
+    fn recycle(self: Box<Self>, workspace: &mut Workspace) -> Vec<Item> {
+        (*self).recycle(workspace)
     }
 }

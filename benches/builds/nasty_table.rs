@@ -59,7 +59,7 @@ fn times(method: &Method, scenes: &[Scene], pools: &Pools, repetitions: usize) -
     let prepare = |i: usize| input.set(scenes[i].triangles.clone());
     let build = |_| {
         let triangles = input.take();
-        pools[0].install(|| (method.build)(triangles))
+        pools[0].install(|| method.build(triangles))
     };
     let times = interleaved(scenes.len(), repetitions, prepare, build);
     times.into_iter().map(|time| time.as_secs_f64()).collect()

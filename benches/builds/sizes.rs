@@ -54,7 +54,7 @@ fn rows(scene: &Scene, extent: &Extent, pools: &Pools, methods: &[Method]) -> Ve
         |_| input.set(scene.triangles.clone()),
         |i| {
             let triangles = input.take();
-            pools[i % 2].install(|| (methods[i / 2].build)(triangles))
+            pools[i % 2].install(|| methods[i / 2].build(triangles))
         },
     );
     let row = |i: usize| {

@@ -22,6 +22,7 @@
 //! - codes with bits of size among those of place (Vinkler, Bittner and Havran, Extended Morton Codes, HPG 2017): no better in six
 //!   ways of mixing them.
 
+use super::buffers::Buffers;
 use super::curve::{Curve, border};
 use super::divide::Rules;
 use super::heuristic::codes;
@@ -36,6 +37,7 @@ use crate::primitive::LEAF_WIDTH;
 use crate::tree::{Child, MAX_DEPTH};
 use alloc::vec;
 use alloc::vec::Vec;
+use core::mem::take;
 use core::ops::Range;
 
 /// Up to this many times its primitives' share of the scene's area a cluster's box may have, whatever is in it.
@@ -64,12 +66,14 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
     size: usize,
     rules: &Rules<'_, H>,
     watch: &Watch<'_>,
-    split: impl FnOnce(Vec<PrimRef<S>>) -> Subtree<S>,
+    buffers: &mut Buffers<S>,
+    split: impl FnOnce(&mut Vec<PrimRef<S>>) -> Subtree<S>,
 ) -> Subtree<S> {
     // Of a cluster that is cut, no more than the layout can divide; of one with a tree, no more than lie in one task.
     let is_cut = rules.max_runs > 1;
     let size = if is_cut { size.min(rules.max_leaf_size * rules.max_runs) } else { size.min(TASK_SIZE) };
-    let curve = Curve::new(codes(references, scene), MAX_DEPTH);
+    let codes = codes(references, scene, take(&mut buffers.keys));
+    let curve = Curve::new(codes, MAX_DEPTH, &mut buffers.spare_keys);
     let (_, tasks) = curve.divide::<S>();
     let order = Order { references, curve: &curve, max_leaf_size: rules.max_leaf_size };
     let scale = scene.area_scale();
@@ -145,8 +149,8 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
         // It was stopped.
         return Subtree::with_capacity(0, 0);
     }
-    let clusters = (0..).zip(boxes).map(|(number, aabb)| PrimRef::new(aabb, number)).collect();
-    let Subtree { mut nodes, root, indices, .. } = split(clusters);
+    let mut clusters: Vec<_> = (0..).zip(boxes).map(|(number, aabb)| PrimRef::new(aabb, number)).collect();
+    let Subtree { mut nodes, root, indices, .. } = split(&mut clusters);
     let moved = |child: Child| match indices.get(child.slots()) {
         Some(&[cluster]) if child.is_leaf() => task_child(cluster as usize),
         _ => child,
@@ -154,5 +158,8 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
     for node in &mut nodes {
         node.children = node.children.map(moved);
     }
-    join(Subtree { nodes, root: moved(root), ..Subtree::with_capacity(0, 0) }, &subtrees)
+    let top = Subtree { nodes, root: moved(root), ..Subtree::with_capacity(0, 0) };
+    let joined = join(top, &subtrees, buffers);
+    buffers.keys = curve.keys;
+    joined
 }

@@ -1,6 +1,6 @@
 //! References in the order of a curve: keys of their codes and places, sorted.
 
-use super::radix::sorted;
+use super::radix::sort;
 use super::subtree::{Parent, Subtree, TASK_SIZE, task_child};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
@@ -20,8 +20,8 @@ pub(super) struct Curve {
 
 impl Curve {
     /// Of at least one code. Keys have `bits` at the most: codes lose their lowest if they have too many. Not fewer than
-    /// places take.
-    pub fn new(codes: Vec<u64>, bits: usize) -> Self {
+    /// places take. `spare` is memory.
+    pub fn new(codes: Vec<u64>, bits: usize, spare: &mut Vec<u64>) -> Self {
         let place_bits = usize::BITS - (codes.len() - 1).leading_zeros();
         let code_bits = u64::BITS - codes.iter().fold(0, |all, code| all | code).leading_zeros();
         let lost = (code_bits + place_bits).saturating_sub(bits as u32);
@@ -29,7 +29,8 @@ impl Curve {
         parallel::for_each(&mut keys, |place, code| {
             *code = (*code >> lost).unbounded_shl(place_bits) | place as u64;
         });
-        Self { keys: sorted(keys, place_bits, place_bits + code_bits - lost), place: (1 << place_bits) - 1 }
+        sort(&mut keys, spare, place_bits, place_bits + code_bits - lost);
+        Self { keys, place: (1 << place_bits) - 1 }
     }
 
     /// The place of a key's reference.

@@ -9,6 +9,7 @@
 //! the same on any number of them. Nothing recurses: neither stack depth nor time hang on a
 //! heuristic's good will.
 
+use super::buffers::Buffers;
 use super::clusters::{self, SPLIT_DEPTH};
 use super::divide::{Rules, Set};
 use super::heuristic::{Heuristic, codes};
@@ -21,6 +22,7 @@ use crate::parallel;
 use crate::tree::Tree;
 use alloc::vec;
 use alloc::vec::Vec;
+use core::mem::take;
 
 /// A set of references that is to become a subtree.
 struct OpenNode<'r, S> {
@@ -46,14 +48,16 @@ struct Build<'h, S, H: ?Sized> {
     scene: Aabb<S>,
 }
 
-/// Builds the tree over valid references; none if it was told to stop.
+/// Builds the tree over the buffers' references, which are valid; none if it was told to stop.
 pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
-    references: Vec<PrimRef<S>>,
+    buffers: &mut Buffers<S>,
     rules: &Rules<'_, H>,
     watch: &Watch<'_>,
 ) -> Option<Tree<S>> {
+    let mut references = take(&mut buffers.references);
     let (aabb, primitives) = (bounds(&references), references.len());
-    let whole = build_whole(references, aabb, rules, watch);
+    let whole = build_whole(&mut references, aabb, rules, watch, buffers);
+    buffers.references = references;
     if watch.ask() == Pace::Stop {
         return None;
     }
@@ -63,46 +67,48 @@ pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
 
 /// As the heuristic wants it: by codes, by splits of clusters, or by splits.
 fn build_whole<S: Scalar, H: Heuristic<S> + ?Sized>(
-    references: Vec<PrimRef<S>>,
+    references: &mut Vec<PrimRef<S>>,
     aabb: Aabb<S>,
     rules: &Rules<'_, H>,
     watch: &Watch<'_>,
+    buffers: &mut Buffers<S>,
 ) -> Subtree<S> {
     if references.is_empty() {
         return Subtree::with_capacity(0, 0);
     }
     watch.begin(references.len());
-    let codes = rules.heuristic.codes(&references, &aabb);
+    let codes = rules.heuristic.codes(references, &aabb);
     if let Some(codes) = codes.filter(|codes| codes.len() == references.len()) {
-        return linear::build(&references, codes, rules.max_depth, rules.max_leaf_size, watch);
+        return linear::build(references, codes, rules.max_depth, rules.max_leaf_size, watch, buffers);
     }
     let size = rules.heuristic.cluster_size();
     if size < 2 {
-        return build_by_splits(references, aabb, rules, watch);
+        return build_by_splits(references, aabb, rules, watch, buffers);
     }
     let above = Rules { max_leaf_size: 1, block_size: 1, max_depth: SPLIT_DEPTH, ..*rules };
-    clusters::build(&references, &aabb, size, rules, watch, |clusters| {
+    clusters::build(references, &aabb, size, rules, watch, buffers, |clusters| {
         watch.begin(clusters.len());
-        build_by_splits(clusters, aabb, &above, watch)
+        build_by_splits(clusters, aabb, &above, watch, &mut Buffers::default())
     })
 }
 
 /// Asks the heuristic to split every node.
 fn build_by_splits<S: Scalar, H: Heuristic<S> + ?Sized>(
-    mut references: Vec<PrimRef<S>>,
+    references: &mut Vec<PrimRef<S>>,
     aabb: Aabb<S>,
     rules: &Rules<'_, H>,
     watch: &Watch<'_>,
+    buffers: &mut Buffers<S>,
 ) -> Subtree<S> {
     let len = references.len();
     // Slots have 32 bits.
     let most = len.saturating_add(rules.heuristic.spare(len)).min(u32::MAX as usize);
     references.resize(most, PrimRef::new(Aabb::EMPTY, u32::MAX));
     let build = Build { rules, watch, scene: aabb };
-    let root = Set { memory: &mut references, len, aabb, depth: 0 };
+    let root = Set { memory: references, len, aabb, depth: 0 };
     let (top, tasks) = build_top(OpenNode { set: root, parent: None }, &build);
     let subtrees = parallel::map(tasks, |task| build_subtree(task, &build));
-    join(top, &subtrees.iter().map(Subtree::all).collect::<Vec<_>>())
+    join(top, &subtrees.iter().map(Subtree::all).collect::<Vec<_>>(), buffers)
 }
 
 /// Divides all sets of more than [`TASK_SIZE`] references, and returns the others as tasks; and, once the build is not steady
@@ -144,9 +150,10 @@ fn build_subtree<S: Scalar, H: Heuristic<S> + ?Sized>(
     match watch.ask() {
         Pace::Steady => {}
         Pace::Hurry => {
-            let codes = codes(root.references(), scene);
+            let codes = codes(root.references(), scene, Vec::new());
             let depth = rules.max_depth - root.depth;
-            return linear::build(root.references(), codes, depth, rules.max_leaf_size, watch);
+            let buffers = &mut Buffers::default();
+            return linear::build(root.references(), codes, depth, rules.max_leaf_size, watch, buffers);
         }
         Pace::Stop => return Subtree::with_capacity(0, 0),
     }

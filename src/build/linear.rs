@@ -8,6 +8,7 @@
 //! No path is longer than a key has bits, of which there are [`MAX_DEPTH`](crate::MAX_DEPTH) at the most: each step down
 //! settles one.
 
+use super::buffers::Buffers;
 use super::curve::{Curve, difference};
 use super::reference::{PrimRef, bounds};
 use super::subtree::{Subtree, join, task_of};
@@ -30,8 +31,9 @@ pub(super) fn build<S: Scalar>(
     depth: usize,
     max_leaf_size: usize,
     watch: &Watch<'_>,
+    buffers: &mut Buffers<S>,
 ) -> Subtree<S> {
-    let curve = Curve::new(codes, depth);
+    let curve = Curve::new(codes, depth, &mut buffers.spare_keys);
     let (mut top, tasks) = curve.divide();
     let order = Order { references, curve: &curve, max_leaf_size };
     let built = parallel::map(tasks, |task: Range<usize>| {
@@ -54,7 +56,9 @@ pub(super) fn build<S: Scalar>(
         });
         top.nodes[index] = Node { children, ..Node::new(boxes) };
     }
-    join(top, &subtrees.iter().map(Subtree::all).collect::<Vec<_>>())
+    let joined = join(top, &subtrees.iter().map(Subtree::all).collect::<Vec<_>>(), buffers);
+    buffers.keys = curve.keys;
+    joined
 }
 
 /// What the keys stand for.

@@ -9,6 +9,7 @@
 //! The driver alone partitions references, bounds the depth and falls back to equal halves, so
 //! that a bad heuristic makes a slow tree, never a broken one.
 
+mod buffers;
 mod clusters;
 mod curve;
 mod cut;
@@ -23,6 +24,7 @@ mod runs;
 mod subtree;
 mod watch;
 
+pub(crate) use buffers::Buffers;
 pub(crate) use divide::Rules;
 pub(crate) use driver::build_tree;
 pub use optimise::{Gain, Optimise};

@@ -1,7 +1,6 @@
 //! Sorting of codes.
 
 use crate::parallel;
-use alloc::vec;
 use alloc::vec::Vec;
 
 /// Bits in a digit: the places of 2,048 digits fit the first cache.
@@ -16,24 +15,23 @@ const FEW: usize = 256;
 /// So many keys go into a bucket, if they are spread evenly: as many as the second cache holds twice.
 const BUCKET: usize = 1 << 15;
 
-/// Sorts keys that ascend already as far as they are equal above the bit `low`; there are no bits from `high` on.
+/// Sorts keys that ascend already as far as they are equal above the bit `low`; there are no bits from `high` on. `buckets`
+/// is memory.
 ///
 /// A radix sort: by the highest bits into buckets, and those, at the same time, by four digits from the lowest up. What is equal in
 /// all of them, which is little but in the densest places, is sorted by comparisons. 6 ns a key; by the highest digit into 2,048
 /// buckets, and those by two digits more, it was 8, since small buckets clear more places than they have keys.
-pub(super) fn sorted(mut keys: Vec<u64>, low: u32, high: u32) -> Vec<u64> {
+pub(super) fn sort(keys: &mut Vec<u64>, buckets: &mut Vec<u64>, low: u32, high: u32) {
     if keys.len() < FEW {
-        keys.sort_unstable();
-        return keys;
+        return keys.sort_unstable();
     }
-    let mut buckets = vec![0; keys.len()];
+    buckets.resize(keys.len(), 0);
     let bits = (keys.len() / BUCKET).checked_ilog2().unwrap_or(0).min(DIGIT);
     if bits == 0 {
-        sort_bucket(&mut keys, &mut buckets, low, high);
-        return keys;
+        return sort_bucket(keys, buckets, low, high);
     }
     let top = high.saturating_sub(bits).max(low);
-    let mut ends = scatter(&keys, &mut buckets, top);
+    let mut ends = scatter(keys, buckets, top);
     let (mut sources, mut targets) = (buckets.as_mut_slice(), keys.as_mut_slice());
     let mut done = 0;
     let parts = ends.iter_mut().map(|end| {
@@ -46,7 +44,7 @@ pub(super) fn sorted(mut keys: Vec<u64>, low: u32, high: u32) -> Vec<u64> {
     });
     let parts = parts.filter(|(bucket, _)| bucket.len() > 1).collect();
     parallel::map(parts, |(bucket, spare)| sort_bucket(bucket, spare, low, top));
-    buckets
+    core::mem::swap(keys, buckets);
 }
 
 /// Sorts a bucket below the bit `high`.
@@ -109,7 +107,9 @@ mod tests {
                 let keys: Vec<u64> = (0..n).map(|place| code() << 17 | place).collect();
                 let mut expected = keys.clone();
                 expected.sort_unstable();
-                assert!(sorted(keys, 17, 17 + bits) == expected, "{n} keys of {bits} bits");
+                let mut sorted = keys;
+                sort(&mut sorted, &mut Vec::new(), 17, 17 + bits);
+                assert!(sorted == expected, "{n} keys of {bits} bits");
             }
         }
     }

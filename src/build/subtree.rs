@@ -1,5 +1,6 @@
 //! Parts of a tree that were built by themselves, and the tree made of them.
 
+use super::buffers::{Buffers, buffer};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
 use crate::tree::{Child, Node, Run};
@@ -83,10 +84,14 @@ pub(super) fn task_of<S>(child: Child, top: &Subtree<S>) -> Option<usize> {
 
 /// The top, which has no leaves, and the subtrees of its tasks as one tree, a left child the node after its parent
 /// everywhere, and slots in the order of the leaves.
-pub(super) fn join<S: Scalar>(mut top: Subtree<S>, subtrees: &[Piece<'_, S>]) -> Subtree<S> {
+pub(super) fn join<S: Scalar>(
+    mut top: Subtree<S>,
+    subtrees: &[Piece<'_, S>],
+    buffers: &mut Buffers<S>,
+) -> Subtree<S> {
     // Which nodes and slots follow one another, and by how much those of subtrees move.
     let (mut nodes, mut slots) = (Vec::<(Range<usize>, Option<usize>, Move)>::new(), Vec::<&[u32]>::new());
-    let mut runs = Vec::new();
+    let mut runs = buffer(&mut buffers.runs, subtrees.iter().map(|piece| piece.runs.len()).sum());
     let mut end = Move { node: 0, slot: 0 };
     let mut open = vec![(None, top.root)];
     while let Some((parent, child)) = open.pop() {
@@ -111,8 +116,10 @@ pub(super) fn join<S: Scalar>(mut top: Subtree<S>, subtrees: &[Piece<'_, S>]) ->
         let nodes = task.map_or(&top.nodes[..], |task| subtrees[task].nodes)[range].iter();
         nodes.map(move |node| Node { children: node.children.map(|child| by.of(child)), ..*node })
     });
-    let indices = parallel::concat(slots.into_iter().map(|slots| slots.iter().copied()).collect());
-    Subtree { nodes: parallel::concat(parts.collect()), root: top.root, indices, runs }
+    let slots = slots.into_iter().map(|slots| slots.iter().copied());
+    let indices = parallel::concat(slots.collect(), |len| buffer(&mut buffers.indices, len));
+    let nodes = parallel::concat(parts.collect(), |len| buffer(&mut buffers.nodes, len));
+    Subtree { nodes, root: top.root, indices, runs }
 }
 
 /// By how much numbers of nodes and of slots grow.

@@ -2,9 +2,11 @@
 
 mod error;
 mod quality;
+mod workspace;
 
 pub use error::BuildError;
 pub use quality::Quality;
+pub use workspace::Workspace;
 
 use crate::build::heuristic::Heuristic;
 use crate::build::{Optimise, Pace, PrimRef, Rules, Watch, Watcher, build_tree};
@@ -237,6 +239,18 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// # Errors
     /// [`BuildError`], whose messages say what is wrong, where, and what to do.
     pub fn build(self, primitives: impl IntoIterator<Item = P>) -> Result<Bvh<P, L>, BuildError> {
+        self.build_in(&mut Workspace::for_one(), primitives)
+    }
+
+    /// The same hierarchy as [`build`](Self::build) makes, in memory that earlier builds have left behind: see [`Workspace`].
+    ///
+    /// # Errors
+    /// As [`build`](Self::build).
+    pub fn build_in(
+        self,
+        workspace: &mut Workspace<P::Scalar>,
+        primitives: impl IntoIterator<Item = P>,
+    ) -> Result<Bvh<P, L>, BuildError> {
         if self.max_leaf_size == Some(0) {
             return Err(BuildError::ZeroLeafSize);
         }
@@ -246,8 +260,8 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         };
         let pace = self.pace();
         let primitives = collect(primitives.into_iter())?;
-        let (layout, skipped) =
-            in_pool(self.threads, || self.lay_out(&primitives, &pace)).map_err(BuildError::ThreadPool)??;
+        let (layout, skipped) = in_pool(self.threads, || self.lay_out(&primitives, &pace, workspace))
+            .map_err(BuildError::ThreadPool)??;
         drop(pace);
         Ok(Bvh::from_parts(layout, backend, primitives, skipped))
     }
@@ -257,8 +271,9 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         &self,
         primitives: &[P],
         pace: &(dyn Fn(f64) -> Pace + Sync),
+        workspace: &mut Workspace<P::Scalar>,
     ) -> Result<(L, Vec<u32>), BuildError> {
-        let References { valid, skipped } = self.references(primitives)?;
+        let skipped = self.refer(primitives, &mut workspace.build.references)?;
         let block_size = L::BLOCK_SIZE;
         let rules = Rules {
             heuristic: &self.heuristic,
@@ -268,7 +283,8 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
             max_depth: MAX_DEPTH,
         };
         let watch = Watch::new(pace);
-        let mut tree = build_tree(valid, &rules, &watch).ok_or(BuildError::Stopped)?;
+        let mut tree = build_tree(&mut workspace.build, &rules, &watch).ok_or(BuildError::Stopped)?;
+        workspace.tree_is_built();
         let optimise = self.optimise.or_else(|| self.heuristic.optimise());
         if let Some(optimise) = optimise.filter(|optimise| optimise.rounds > 0) {
             optimise.run(&mut tree, || watch.ask() == Pace::Steady);
@@ -276,8 +292,9 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         if watch.ask() == Pace::Stop {
             return Err(BuildError::Stopped);
         }
-        let layout = L::lay_out(tree, primitives).ok_or(BuildError::TooLarge)?;
-        Ok((layout, skipped))
+        let layout = L::lay_out(&mut tree, primitives, &mut workspace.layout);
+        workspace.build.reclaim(tree);
+        Ok((layout.ok_or(BuildError::TooLarge)?, skipped))
     }
 
     /// What the watcher says, and the clock.
@@ -294,9 +311,14 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         }
     }
 
-    fn references(&self, primitives: &[P]) -> Result<References<P::Scalar>, BuildError> {
+    /// Makes references to the valid primitives; the indices of the others.
+    fn refer(
+        &self,
+        primitives: &[P],
+        references: &mut Vec<PrimRef<P::Scalar>>,
+    ) -> Result<Vec<u32>, BuildError> {
         let is_flawed = AtomicBool::new(false);
-        let mut valid = parallel::collect(primitives, |index, primitive| {
+        parallel::collect(primitives, references, |index, primitive| {
             let reference = PrimRef::new(primitive.aabb(), index as u32);
             if reference.flaw().is_some() {
                 is_flawed.store(true, Relaxed);
@@ -305,7 +327,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         });
         let mut skipped = Vec::new();
         if is_flawed.into_inner() {
-            let flaws = valid.iter().filter_map(|reference| Some((reference.index, reference.flaw()?)));
+            let flaws = references.iter().filter_map(|reference| Some((reference.index, reference.flaw()?)));
             match self.on_invalid {
                 OnInvalid::Skip => skipped = flaws.map(|(index, _)| index).collect(),
                 OnInvalid::Reject => {
@@ -314,16 +336,10 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
                     }
                 }
             }
-            valid.retain(|reference| reference.flaw().is_none());
+            references.retain(|reference| reference.flaw().is_none());
         }
-        Ok(References { valid, skipped })
+        Ok(skipped)
     }
-}
-
-/// What there is to build from: references to the valid primitives, and the indices of the others.
-struct References<S> {
-    valid: Vec<PrimRef<S>>,
-    skipped: Vec<u32>,
 }
 
 /// At most 2^32 - 1 items of an iterator.

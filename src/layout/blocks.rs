@@ -23,7 +23,7 @@ pub(super) struct Word(u64);
 /// faults, and made first builds of a process with `Quality::Fast` a fifth quicker (sponza 36 to 30 ms, dragon 27 to 23), but with
 /// `Quality::Balanced` up to two fifths slower (sponza 71 to 69, 92 and 99 ms): on a virtual machine, which waits for its host where
 /// it touches memory that was given back. The kernel had nothing to compact. Rays were quicker by 1 %.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(super) struct Blocks {
     /// One line more than there is room for, less a word: somewhere in them the first line begins.
     words: Vec<Word>,
@@ -42,15 +42,21 @@ impl Blocks {
     /// No block has to begin at multiples of more.
     pub const ALIGN: usize = LINE;
 
-    /// Parts that are written independently, each by `write`, which is told its number. They are `ranges` of bytes, which begin
+    /// The memory filled with other blocks, or new memory if it is too small or more than twice too large.
+    ///
+    /// Parts are written independently, each by `write`, which is told its number. They are `ranges` of bytes, which begin
     /// with lines and follow one another from 0 on but for what is left of a line. If all are empty, none is written.
-    pub fn filled(ranges: &[Range<usize>], write: impl Fn(usize, &mut Part<'_>) + Sync + Send) -> Self {
+    pub fn filled(self, ranges: &[Range<usize>], write: impl Fn(usize, &mut Part<'_>) + Sync + Send) -> Self {
         let lines = ranges.last().map_or(0, |last| last.end).div_ceil(LINE);
         if lines == 0 {
             return Self::default();
         }
         let len = lines * WORDS + WORDS - 1;
-        let mut words: Vec<Word> = Vec::with_capacity(len);
+        let mut words = self.words;
+        words.clear();
+        if !(len..=2 * len).contains(&words.capacity()) {
+            words = Vec::with_capacity(len);
+        }
         let address = words.as_ptr().addr();
         let first = (address.next_multiple_of(LINE) - address) / size_of::<Word>();
         let (before, rest) = words.spare_capacity_mut()[..len].split_at_mut(first);
@@ -126,7 +132,7 @@ impl Clone for Blocks {
             // SAFETY: words are any bytes, and any bytes are some.
             unsafe { part.get_mut(0, words.len()) }.copy_from_slice(words);
         };
-        Self::filled(core::slice::from_ref(&(0..size_of_val(words))), copy)
+        Self::default().filled(core::slice::from_ref(&(0..size_of_val(words))), copy)
     }
 }
 
@@ -193,7 +199,7 @@ mod tests {
     fn parts_are_written_and_the_rest_is_clear() {
         // What the allocator has at hand for the same size is not clear.
         drop(core::hint::black_box(alloc::vec![Word(u64::MAX); 384 / 8 + WORDS - 1]));
-        let blocks = Blocks::filled(&[0..100, 128..300, 320..320, 320..323], |number, part| {
+        let blocks = Blocks::default().filled(&[0..100, 128..300, 320..320, 320..323], |number, part| {
             if number == 2 {
                 return;
             }
@@ -208,6 +214,6 @@ mod tests {
         (expected[0], expected[129], expected[323]) = (1, 2, 4);
         assert_eq!(bytes, expected);
         assert_eq!(blocks.clone().words(), blocks.words());
-        assert_eq!(Blocks::filled(&[], |_, _| unreachable!()).words(), []);
+        assert_eq!(Blocks::default().filled(&[], |_, _| unreachable!()).words(), []);
     }
 }

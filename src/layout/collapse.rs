@@ -1,6 +1,7 @@
 //! The wide tree, as planned: first where every block lies, then what is in it.
 
 use super::blocks::{Blocks, Part};
+use super::buffers::Buffers;
 use super::form::{Form, Node};
 use super::plan::Plan;
 use super::wide::{MAX_PENDING, NOBODY, Reference, WideTree};
@@ -84,24 +85,29 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
     /// collapse has one, as that of a hostile heuristic's tree may, the tree is collapsed by levels instead. Then a path of
     /// at most `MAX_DEPTH` binary nodes becomes one of `MAX_DEPTH / log2(N)`, which leaves N - 1 children at each; and a
     /// leaf of 2^32 primitives adds no more than 30 / log2(N) to it.
-    pub(crate) fn new(tree: Tree<S>, contents: &impl Contents<S>) -> Option<Self> {
+    pub(crate) fn new(
+        tree: &mut Tree<S>,
+        contents: &impl Contents<S>,
+        buffers: &mut Buffers,
+    ) -> Option<Self> {
         const { assert!((MAX_DEPTH + 30).div_ceil(N.ilog2() as usize) * (N - 1) <= MAX_PENDING) }
-        let plan = Plan::<S, N>::new(&tree, F::leaf_cost(contents.operands()));
+        let plan = Plan::<S, N>::new(tree, F::leaf_cost(contents.operands()), buffers.weights());
         let cheapest = |node, roots: &mut _| plan.cheapest(node, roots);
         let by_levels = |node, roots: &mut _| plan.by_levels(node, roots);
         let arrangement = match Self::arrange(&plan, cheapest, contents) {
             Err(Failure::TooDeep) => Self::arrange(&plan, by_levels, contents),
             other => other,
         };
+        buffers.keep_weights(plan.into_weights());
         let Arrangement { sections, root } = arrangement.ok()?;
         let coordinates = [tree.aabb.min, tree.aabb.max];
         Some(Self {
-            blocks: Self::fill(sections, &tree, contents),
+            blocks: Self::fill(sections, tree, contents, buffers.blocks()),
             root,
             aabb: tree.aabb,
             len: tree.len(),
             references: tree.indices.len(),
-            form: F::new(tree.indices, contents.operands()),
+            form: F::new(&mut tree.indices, contents.operands()),
             is_ordinary: coordinates.as_flattened().iter().all(|x| x.abs() < S::LARGE_AREA),
         })
     }
@@ -134,7 +140,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         }
         let places: Vec<_> = subtrees.iter().map(|subtree| subtree.place).collect();
         let arranged = parallel::map(subtrees, |subtree| {
-            let mut section = Section::with_capacity(plan.slots(subtree.child).0 as usize / 4);
+            let mut section = Section::with_capacity(plan.slots(subtree.child).0 as usize / 5);
             let root = Open { place: None, ..subtree };
             section.grow::<F, N>(root, plan, &roots_of, contents, Some).map(|()| section)
         });
@@ -156,10 +162,15 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
     }
 
     /// Writes every block.
-    fn fill(sections: Vec<Section<S>>, tree: &Tree<S>, contents: &impl Contents<S>) -> Blocks {
+    fn fill(
+        sections: Vec<Section<S>>,
+        tree: &Tree<S>,
+        contents: &impl Contents<S>,
+        memory: Blocks,
+    ) -> Blocks {
         let ranges: Vec<_> =
             sections.iter().map(|section| section.start..section.start + section.bytes).collect();
-        Blocks::filled(&ranges, |number, part| {
+        memory.filled(&ranges, |number, part| {
             let Section { start, blocks, children, .. } = &sections[number];
             let mut moved = Vec::with_capacity(N);
             for (place, block) in blocks.iter().enumerate() {

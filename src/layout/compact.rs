@@ -123,11 +123,16 @@ impl<S: Scalar, const N: usize> Form<S, N> for Compact {
     type Room = Room<S>;
     const COPIES: bool = false;
 
-    fn new(mut indices: Vec<u32>, _: usize) -> Self {
+    fn new(indices: &mut Vec<u32>, _: usize) -> Self {
+        let mut indices = core::mem::take(indices);
         indices.reserve_exact(LEAF_WIDTH);
         indices.extend([NOBODY; LEAF_WIDTH]);
         indices.shrink_to_fit();
         Self { indices }
+    }
+
+    fn into_indices(self) -> Vec<u32> {
+        self.indices
     }
 
     fn operands(&self) -> usize {

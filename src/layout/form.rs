@@ -16,8 +16,11 @@ pub trait Form<S: Scalar, const N: usize>: Clone + PartialEq + Send + Sync + 'st
     /// Whether leaves are blocks with copies of their primitives' operands; else they are ranges of slots.
     const COPIES: bool;
 
-    /// For a tree with these primitives by slot, of so many operands each.
-    fn new(indices: Vec<u32>, operands: usize) -> Self;
+    /// For a tree with these primitives by slot, of so many operands each. Takes them if it keeps them.
+    fn new(indices: &mut Vec<u32>, operands: usize) -> Self;
+
+    /// What it took.
+    fn into_indices(self) -> Vec<u32>;
 
     /// How many scalars of each primitive lie in its leaf.
     fn operands(&self) -> usize;

@@ -1,6 +1,7 @@
 //! The memory that queries walk, made from the binary tree.
 
 mod blocks;
+mod buffers;
 mod collapse;
 mod compact;
 mod form;
@@ -9,6 +10,7 @@ mod packed;
 mod plan;
 mod wide;
 
+pub(crate) use buffers::Buffers;
 pub(crate) use collapse::Contents;
 pub(crate) use form::{Form, Node as WideNode};
 pub use wide::{CompactTree, WideTree};
@@ -19,6 +21,7 @@ use crate::primitive::{Intersect, LEAF_WIDTH, Leaf, Primitive};
 use crate::simd::{Count, Width, prefetch};
 use crate::tree::{Child, Node, Tree};
 use alloc::vec::Vec;
+use core::mem::take;
 
 /// How a hierarchy lies in memory: [`WideTree`], the default, for speed; [`CompactTree`], for few bytes; [`Tree`], as it was
 /// built.
@@ -34,9 +37,13 @@ pub trait Layout<P: Primitive>: Outline<P::Scalar> + Send + Sized {
     #[doc(hidden)]
     const RUNS: usize;
 
-    /// Lays out a tree over the primitives with its indices.
+    /// Lays out a tree over the primitives with its indices, and takes from it what is kept.
     #[doc(hidden)]
-    fn lay_out(tree: Tree<P::Scalar>, primitives: &[P]) -> Option<Self>;
+    fn lay_out(tree: &mut Tree<P::Scalar>, primitives: &[P], buffers: &mut Buffers) -> Option<Self>;
+
+    /// Leaves its memory to the next, what was taken from a tree as one.
+    #[doc(hidden)]
+    fn recycle(self, buffers: &mut Buffers) -> Tree<P::Scalar>;
 }
 
 /// What there is to know about any hierarchy without a ray.
@@ -101,8 +108,12 @@ impl<P: Primitive> Layout<P> for Tree<P::Scalar> {
     const BLOCK_SIZE: usize = 1;
     const RUNS: usize = 1;
 
-    fn lay_out(tree: Self, _: &[P]) -> Option<Self> {
-        Some(tree)
+    fn lay_out(tree: &mut Self, _: &[P], _: &mut Buffers) -> Option<Self> {
+        Some(take(tree))
+    }
+
+    fn recycle(self, _: &mut Buffers) -> Self {
+        self
     }
 }
 
@@ -146,8 +157,13 @@ where
     const BLOCK_SIZE: usize = if F::COPIES && <P::Leaf as Leaf<_, _>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
     const RUNS: usize = N;
 
-    fn lay_out(tree: Tree<P::Scalar>, primitives: &[P]) -> Option<Self> {
-        Self::new(tree, &primitives)
+    fn lay_out(tree: &mut Tree<P::Scalar>, primitives: &[P], buffers: &mut Buffers) -> Option<Self> {
+        Self::new(tree, &primitives, buffers)
+    }
+
+    fn recycle(self, buffers: &mut Buffers) -> Tree<P::Scalar> {
+        buffers.keep_blocks(self.blocks);
+        Tree { indices: self.form.into_indices(), ..Tree::default() }
     }
 }
 

@@ -90,8 +90,12 @@ impl<S: Scalar, const N: usize> Form<S, N> for Packed {
     type Room = ();
     const COPIES: bool = true;
 
-    fn new(_: Vec<u32>, operands: usize) -> Self {
+    fn new(_: &mut Vec<u32>, operands: usize) -> Self {
         Self { operands }
+    }
+
+    fn into_indices(self) -> Vec<u32> {
+        Vec::new()
     }
 
     fn operands(&self) -> usize {

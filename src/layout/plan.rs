@@ -56,7 +56,7 @@ pub(super) struct Plan<'t, S, const N: usize> {
 
 /// What is known of all that is below a binary node.
 #[derive(Clone, Copy)]
-struct Weight<const N: usize> {
+pub(super) struct Weight<const N: usize> {
     /// By k - 1: the least cost of a forest of at most k roots, times the root's area.
     forest: [f32; N],
     /// How many roots it has at the most: more are no cheaper.
@@ -66,9 +66,10 @@ struct Weight<const N: usize> {
 }
 
 impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
-    pub fn new(tree: &'t Tree<S>, leaf: LeafCost) -> Self {
+    /// `weights` is memory, empty.
+    pub fn new(tree: &'t Tree<S>, leaf: LeafCost, mut weights: Vec<Weight<N>>) -> Self {
         let unknown = Weight { forest: [0.0; N], roots: 0, slots: (0, 0) };
-        let mut weights = alloc::vec![unknown; tree.nodes.len()];
+        weights.resize(tree.nodes.len(), unknown);
         let plan = Self { tree, weights: Vec::new(), scale: tree.aabb.area_scale(), leaf };
         let (top, subtrees) = plan.divide();
         let (mut parts, mut rest, mut done) = (Vec::with_capacity(subtrees.len()), weights.as_mut_slice(), 0);
@@ -89,6 +90,11 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
             until[index] = plan.weight(index, below);
         }
         Self { weights, ..plan }
+    }
+
+    /// The memory.
+    pub fn into_weights(self) -> Vec<Weight<N>> {
+        self.weights
     }
 
     /// The nodes of large subtrees, and the small subtrees below them, in the order of the nodes.

@@ -100,6 +100,14 @@ pub struct Tree<S = f32> {
     pub(crate) primitives: usize,
 }
 
+impl<S: Scalar> Default for Tree<S> {
+    /// Over nothing.
+    fn default() -> Self {
+        let (nodes, indices, runs) = (Vec::new(), Vec::new(), Vec::new());
+        Self { nodes, root: Child::default(), aabb: Aabb::EMPTY, indices, runs, primitives: 0 }
+    }
+}
+
 impl<S: Scalar> Tree<S> {
     /// The number of primitives in its leaves.
     pub fn len(&self) -> usize {

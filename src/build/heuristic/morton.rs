@@ -23,7 +23,7 @@ const BITS: u32 = 16;
 
 impl<S: Scalar> Heuristic<S> for Morton {
     fn codes(&self, references: &[PrimRef<S>], scene: &Aabb<S>) -> Option<Vec<u64>> {
-        Some(codes(references, scene))
+        Some(codes(references, scene, Vec::new()))
     }
 
     /// Of a heuristic that asks this one but does not pass its codes on: equal halves.
@@ -32,9 +32,13 @@ impl<S: Scalar> Heuristic<S> for Morton {
     }
 }
 
-/// Each reference's place on the curve through a box.
-pub(in crate::build) fn codes<S: Scalar>(references: &[PrimRef<S>], scene: &Aabb<S>) -> Vec<u64> {
-    let mut codes = alloc::vec![0; references.len()];
+/// Each reference's place on the curve through a box, in the memory of `codes`.
+pub(in crate::build) fn codes<S: Scalar>(
+    references: &[PrimRef<S>],
+    scene: &Aabb<S>,
+    mut codes: Vec<u64>,
+) -> Vec<u64> {
+    codes.resize(references.len(), 0);
     let parts = references.chunks(TASK_SIZE).zip(codes.chunks_mut(TASK_SIZE));
     parallel::map(parts.collect(), |(references, codes)| {
         Backend::best().run(Codes { references, scene, codes });
@@ -103,8 +107,8 @@ mod tests {
         let at = |point: [f32; 3]| PrimRef::new(Aabb::new(point, point), u32::MAX);
         let corners = [at(scene.min), at(scene.center()), at(scene.max)];
         // Of each coordinate, the highest bit and no other; all bits.
-        assert_eq!(codes(&corners, &scene), [0, 0b111 << 45, (1 << 48) - 1]);
+        assert_eq!(codes(&corners, &scene, Vec::new()), [0, 0b111 << 45, (1 << 48) - 1]);
         let flat = Aabb::new([5.0; 3], [5.0; 3]);
-        assert_eq!(codes(&[at([5.0; 3])], &flat), [0]);
+        assert_eq!(codes(&[at([5.0; 3])], &flat, alloc::vec![7, 7]), [0]);
     }
 }

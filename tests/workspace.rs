@@ -1,0 +1,130 @@
+//! Hierarchies are the same in memory that others have left, and leave it to the next.
+
+#[path = "../benches/builds/memory.rs"]
+mod memory;
+mod common {
+    pub mod heuristics;
+    pub mod hostile;
+}
+
+use bvhkit::heuristic::Heuristic;
+use bvhkit::{
+    BuildError, Builder, Bvh, CompactTree, Fast, Layout, OnInvalid, Pace, Quality, Scalar, Tree, Triangle,
+    WideTree, Workspace,
+};
+use common::heuristics;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+fn triangles<S: Scalar>(n: usize) -> Vec<Fast<Triangle<S>>> {
+    let mut rng = Pcg64Mcg::seed_from_u64(n as u64);
+    let mut point = |size: f64| [0.0; 3].map(|_: f64| rng.random_range(-size..size));
+    let add = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| S::from_f64(a[k] + b[k]));
+    let mut triangle = |_| {
+        let (center, b, c) = (point(100.0), point(2.0), point(2.0));
+        Fast(Triangle::new(add(center, [0.0; 3]), add(center, b), add(center, c)))
+    };
+    (0..n).map(&mut triangle).collect()
+}
+
+/// Tests take turns: one of them counts what all threads allocate.
+fn turn() -> MutexGuard<'static, ()> {
+    static TURN: Mutex<()> = Mutex::new(());
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// In new memory and in the workspace.
+fn assert_same<S: Scalar, H: Heuristic<S> + Clone, L: Layout<Fast<Triangle<S>>> + PartialEq>(
+    what: &str,
+    builder: &Builder<Fast<Triangle<S>>, H, L>,
+    triangles: &[Fast<Triangle<S>>],
+    workspace: &mut Workspace<S>,
+) {
+    let new = builder.clone().build(triangles.iter().copied()).unwrap();
+    let old = builder.clone().build_in(workspace, triangles.iter().copied()).unwrap();
+    assert!(new.layout() == old.layout(), "{what}, {} triangles", triangles.len());
+    old.check().unwrap_or_else(|error| panic!("{what}: {error}"));
+    assert!(old.recycle(workspace) == triangles, "{what}: the primitives come back");
+}
+
+/// With every preset and heuristic.
+fn assert_all_same<S: Scalar, L: Layout<Fast<Triangle<S>>> + PartialEq>(
+    layout: &str,
+    triangles: &[Fast<Triangle<S>>],
+    workspace: &mut Workspace<S>,
+) {
+    for quality in [Quality::Fast, Quality::Balanced, Quality::High] {
+        let builder = Builder::<_, _, Tree<S>>::layout::<L>(Tree::builder().quality(quality));
+        assert_same(&format!("{layout}, {quality:?}"), &builder, triangles, workspace);
+    }
+    for (name, heuristic) in &heuristics::all() {
+        let builder = Tree::builder().heuristic(&**heuristic).max_leaf_size(2).layout::<L>();
+        assert_same(&format!("{layout}, {name}"), &builder, triangles, workspace);
+    }
+}
+
+/// One workspace for all: what was in it is of other sizes and layouts.
+#[test]
+fn hierarchies_are_the_same_in_memory_that_others_left() {
+    fn with<S: Scalar>(sizes: &[usize]) {
+        let mut workspace = Workspace::<S>::new();
+        for &size in sizes {
+            let triangles = triangles(size);
+            assert_all_same::<S, WideTree<S>>("wide", &triangles, &mut workspace);
+            assert_all_same::<S, CompactTree<S>>("compact", &triangles, &mut workspace);
+            assert_all_same::<S, Tree<S>>("binary", &triangles, &mut workspace);
+            assert_all_same::<S, WideTree<S, 8>>("8 wide", &triangles, &mut workspace);
+        }
+    }
+    let _turn = turn();
+    with::<f32>(&[300, 12_000, 0, 1, 9, 5_000, 20_000, 40]);
+    with::<f64>(&[300, 6_000, 40]);
+}
+
+#[test]
+fn a_workspace_is_good_for_more_after_a_build_that_failed() {
+    let good = triangles::<f32>(10_000);
+    let mut bad = good.clone();
+    bad[7].0.a[1] = f32::NAN;
+    let mut workspace = Workspace::new();
+    let _turn = turn();
+    for _ in 0..2 {
+        let stopped = Bvh::builder().watch(|_| Pace::Stop).build_in(&mut workspace, good.iter().copied());
+        assert_eq!(stopped.unwrap_err(), BuildError::Stopped);
+        let rejected = Bvh::builder().build_in(&mut workspace, bad.iter().copied());
+        assert!(matches!(rejected, Err(BuildError::InvalidPrimitive { index: 7, .. })));
+        let skipping = Bvh::builder().on_invalid(OnInvalid::Skip);
+        let rest = skipping.clone().build_in(&mut workspace, bad.iter().copied()).unwrap();
+        assert_eq!(rest.skipped(), [7]);
+        assert!(rest.layout() == skipping.build(bad.iter().copied()).unwrap().layout());
+        assert_eq!(rest.recycle(&mut workspace).len(), bad.len());
+        assert_same("after failures", &Bvh::builder(), &good, &mut workspace);
+    }
+}
+
+/// Counted in allocations of any time, on one thread: lists of tasks come and go, buffers stay.
+#[test]
+fn later_builds_take_the_memory_of_earlier_ones() {
+    let _turn = turn();
+    let triangles = triangles::<f32>(100_000);
+    for quality in [Quality::Fast, Quality::Balanced] {
+        let mut workspace = Workspace::new();
+        let builder = Bvh::builder().quality(quality).threads(1);
+        let mut peaks = [0; 3].map(|_: usize| {
+            let input = triangles.clone();
+            let (bvh, peak) = memory::peak(|| builder.clone().build_in(&mut workspace, input).unwrap());
+            bvh.recycle(&mut workspace);
+            peak
+        });
+        let first = core::mem::take(&mut peaks[0]);
+        assert!(workspace.bytes() > 100 * triangles.len(), "{} bytes kept", workspace.bytes());
+        let later = peaks[1].max(peaks[2]) as f64 / first as f64;
+        assert!(later < 0.35, "{quality:?}: {later} of the first build's memory");
+        let small = || triangles[..100].iter().copied();
+        let wide = builder.clone().build_in(&mut workspace, small()).unwrap();
+        let binary = builder.layout::<Tree>().build_in(&mut workspace, small()).unwrap();
+        let bytes = wide.report().memory_bytes.max(binary.report().memory_bytes);
+        assert!(bytes < 20_000, "{bytes}: a small one has none of a large one's");
+    }
+}
