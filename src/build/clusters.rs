@@ -55,9 +55,6 @@ pub(super) const SPLIT_DEPTH: usize = MAX_DEPTH - DEPTH;
 
 const _: () = assert!(TASK_SIZE < 1 << DEPTH, "what lies in a task halves to one in fewer steps");
 
-/// How many references are asked for before their turn.
-const AHEAD: usize = 64;
-
 /// The tree over references, at least one, in clusters of up to `size`, which `split` makes a tree of: one whose leaves
 /// are single clusters.
 pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
@@ -92,22 +89,19 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
         (sum * sum >= EVEN * count * squares).then_some(aabb)
     };
     let tasks = parallel::map(tasks, |task: Range<usize>| {
-        let mut built = Subtree::with_capacity(task.len() / 4, task.len());
-        let (mut clusters, mut open, mut parts) = (Vec::new(), vec![task], Vec::with_capacity(MAX_DEPTH + 1));
-        let (mut row, mut last) = (Vec::with_capacity(size), Vec::with_capacity(size));
+        let mut built = Subtree::with_capacity(if is_cut { 0 } else { task.len() / 4 }, task.len());
+        let mut clusters = Vec::new();
         if watch.ask() == Pace::Stop {
             return (built, clusters);
         }
+        let sorted = order.sorted(&curve.keys[task.clone()]);
+        let (mut last, mut parts) = (Vec::with_capacity(size), Vec::with_capacity(MAX_DEPTH + 1));
+        let mut open = vec![task.clone()];
         while let Some(range) = open.pop() {
             let keys = &curve.keys[range.clone()];
-            // Those of the next cluster.
-            curve.keys[range.end..].iter().take(size.min(AHEAD)).for_each(|key| order.ask_for(key));
-            let is_few = keys.len() <= size;
-            if is_few {
-                row.clear();
-                row.extend(keys.iter().map(|key| *order.reference(key)));
-            }
-            let Some(aabb) = is_few.then(|| cluster(&row)).flatten() else {
+            let row = &sorted[range.start - task.start..range.end - task.start];
+            let is_few = row.len() <= size;
+            let Some(aabb) = is_few.then(|| cluster(row)).flatten() else {
                 let border = range.start + border(keys);
                 open.extend([border..range.end, range.start..border]);
                 continue;
@@ -115,7 +109,7 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
             let begin = [built.nodes.len(), built.indices.len(), built.runs.len()];
             let root = if is_cut {
                 if keys.len() > LEAF_WIDTH {
-                    cutter.cut(&row, &aabb, &mut last, &mut built.runs);
+                    cutter.cut(row, &aabb, &mut last, &mut built.runs);
                 }
                 built.indices.extend(row.iter().map(|reference| reference.index));
                 Root { child: Child::leaf(0..row.len()), aabb, height: 0 }

@@ -159,9 +159,19 @@ impl<S: Scalar> Order<'_, S> {
         &self.references[self.curve.place(*key)]
     }
 
+    /// Those of keys, in their order.
+    pub fn sorted(&self, keys: &[u64]) -> Vec<PrimRef<S>> {
+        let ahead = keys.iter().skip(AHEAD).map(Some).chain(core::iter::repeat(None));
+        let in_order = keys.iter().zip(ahead).map(|(key, ahead)| {
+            ahead.inspect(|key| self.ask_for(key));
+            *self.reference(key)
+        });
+        in_order.collect()
+    }
+
     /// Asks for a reference to be brought into the cache: they lie in the input's order.
     #[inline(always)]
-    pub fn ask_for(&self, key: &u64) {
+    fn ask_for(&self, key: &u64) {
         prefetch(core::ptr::from_ref(self.reference(key)).cast(), size_of::<PrimRef<S>>());
     }
 }
