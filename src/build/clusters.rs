@@ -94,36 +94,48 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
         if watch.ask() == Pace::Stop {
             return (built, clusters);
         }
-        let sorted = order.sorted(&curve.keys[task.clone()]);
-        let (mut last, mut parts) = (Vec::with_capacity(size), Vec::with_capacity(MAX_DEPTH + 1));
-        let mut open = vec![task.clone()];
+        let keys = &curve.keys[task];
+        let sorted = order.sorted(keys);
+        let (mut found, mut open) = (Vec::new(), vec![0..keys.len()]);
         while let Some(range) = open.pop() {
-            let keys = &curve.keys[range.clone()];
-            let row = &sorted[range.start - task.start..range.end - task.start];
-            let is_few = row.len() <= size;
-            let Some(aabb) = is_few.then(|| cluster(row)).flatten() else {
-                let border = range.start + border(keys);
-                open.extend([border..range.end, range.start..border]);
-                continue;
-            };
-            let begin = [built.nodes.len(), built.indices.len(), built.runs.len()];
-            let root = if is_cut {
-                if keys.len() > LEAF_WIDTH {
-                    cutter.cut(row, &aabb, &mut last, &mut built.runs);
+            let row = &sorted[range.clone()];
+            match if row.len() <= size { cluster(row) } else { None } {
+                Some(aabb) => found.push((range, aabb)),
+                None => {
+                    let border = range.start + border(&keys[range.clone()]);
+                    open.extend([border..range.end, range.start..border]);
                 }
-                built.indices.extend(row.iter().map(|reference| reference.index));
-                Root { child: Child::leaf(0..row.len()), aabb, height: 0 }
-            } else {
-                let root = order.build(keys, &mut built, &mut parts);
-                if root.height > DEPTH {
-                    built.nodes.truncate(begin[0]);
-                    built.indices.truncate(begin[1]);
-                    order.build(&curve.in_a_row(keys), &mut built, &mut parts)
+            }
+        }
+        let (mut last, mut parts) = ([Vec::new(), Vec::new()], Vec::with_capacity(MAX_DEPTH + 1));
+        for pair in found.chunks(2) {
+            if is_cut {
+                // What fits a leaf is one.
+                let rows = [pair.first(), pair.get(1)].map(|row| match row {
+                    Some((range, aabb)) if range.len() > LEAF_WIDTH => (&sorted[range.clone()], aabb),
+                    _ => (&[][..], scene),
+                });
+                cutter.cut(rows, &mut last);
+            }
+            for ((range, aabb), last) in pair.iter().zip(&last) {
+                let (keys, row) = (&keys[range.clone()], &sorted[range.clone()]);
+                let begin = [built.nodes.len(), built.indices.len(), built.runs.len()];
+                let root = if is_cut {
+                    Cutter::append(row, last, &mut built.runs);
+                    built.indices.extend(row.iter().map(|reference| reference.index));
+                    Root { child: Child::leaf(0..row.len()), aabb: *aabb, height: 0 }
                 } else {
-                    root
-                }
-            };
-            clusters.push((begin, [built.nodes.len(), built.indices.len(), built.runs.len()], root));
+                    let root = order.build(keys, &mut built, &mut parts);
+                    if root.height > DEPTH {
+                        built.nodes.truncate(begin[0]);
+                        built.indices.truncate(begin[1]);
+                        order.build(&curve.in_a_row(keys), &mut built, &mut parts)
+                    } else {
+                        root
+                    }
+                };
+                clusters.push((begin, [built.nodes.len(), built.indices.len(), built.runs.len()], root));
+            }
         }
         (built, clusters)
     });

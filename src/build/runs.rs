@@ -40,26 +40,37 @@ impl<S: Scalar> Cutter<S> {
         Self { scale, max_runs, costs }
     }
 
-    /// Appends the leaves of a row, with slots that are counted from its begin. The row is not empty, not more than so many leaves
-    /// have room for, and lies in `aabb`. `last` is memory.
-    pub fn cut(&self, row: &[PrimRef<S>], aabb: &Aabb<S>, last: &mut Vec<u8>, runs: &mut Vec<Run<S>>) {
-        debug_assert!((1..=self.max_runs * LEAF_WIDTH).contains(&row.len()));
+    /// Where two rows are best cut: for each place, how many are in the last leaf of the cheapest that end there. Rows are not more
+    /// than so many leaves have room for, and lie in their boxes.
+    pub fn cut(&self, rows: [(&[PrimRef<S>], &Aabb<S>); 2], last: &mut [Vec<u8>; 2]) {
+        debug_assert!(rows.iter().all(|(row, _)| row.len() <= self.max_runs * LEAF_WIDTH));
         // Not nothing, so that few leaves are cheaper than many even where all are points.
-        let mut price = PRICE * aabb.scaled_half_area(self.scale).to_f64() + f64::from(f32::MIN_POSITIVE);
-        let backend = Backend::best();
-        loop {
-            backend.run(Cut { cutter: self, row, price: S::from_f64(price), last });
-            if ends(last).count() <= self.max_runs {
-                break;
-            }
-            // The dearer, the fewer. Where areas overflow no price is high enough: full leaves, then.
-            price *= 4.0;
-            if S::from_f64(price) >= S::MAX {
-                last.clear();
-                last.extend((0..row.len()).map(|place| count(0, place % LEAF_WIDTH) as u8));
-                break;
+        let price = |aabb: &Aabb<S>| {
+            PRICE * aabb.scaled_half_area(self.scale).to_f64() + f64::from(f32::MIN_POSITIVE)
+        };
+        let prices = rows.map(|(_, aabb)| price(aabb));
+        let run = |rows, prices: [f64; 2], last: &mut _| {
+            Backend::best().run(Cut { cutter: self, rows, prices: prices.map(S::from_f64), last });
+        };
+        run(rows.map(|(row, _)| row), prices, last);
+        for ((row, _), (mut price, last)) in rows.into_iter().zip(prices.into_iter().zip(last)) {
+            while ends(last).count() > self.max_runs {
+                // The dearer, the fewer. Where areas overflow no price is high enough: full leaves, then.
+                price *= 4.0;
+                if S::from_f64(price) >= S::MAX {
+                    last.clear();
+                    last.extend((0..row.len()).map(|place| count(0, place % LEAF_WIDTH) as u8));
+                    break;
+                }
+                let mut anew = [core::mem::take(last), Vec::new()];
+                run([row, &[]], [price; 2], &mut anew);
+                [*last, _] = anew;
             }
         }
+    }
+
+    /// Appends the leaves of a row that was cut, with slots that are counted from its begin.
+    pub fn append(row: &[PrimRef<S>], last: &[u8], runs: &mut Vec<Run<S>>) {
         let start = runs.len();
         for end in ends(last) {
             let slots = end - usize::from(last[end - 1])..end;
@@ -72,7 +83,7 @@ impl<S: Scalar> Cutter<S> {
 /// Where leaves end, the last one first.
 fn ends(last: &[u8]) -> impl Iterator<Item = usize> {
     let before = |&end: &usize| end.checked_sub(usize::from(last[end - 1])).filter(|&end| end > 0);
-    core::iter::successors(Some(last.len()), before)
+    core::iter::successors(Some(last.len()).filter(|&end| end > 0), before)
 }
 
 /// How many there are in a leaf, by the places of its first and its last in turns of eight.
@@ -80,12 +91,22 @@ fn count(first: usize, last: usize) -> usize {
     (last + LEAF_WIDTH - first) % LEAF_WIDTH + 1
 }
 
-/// Finds, for each place in a row, how many are in the last leaf of the cheapest that end there.
+/// Two rows at a time, since each place waits for the one before: a quick build of sponza takes 16.7 ms so, else 17.1.
 struct Cut<'r, S> {
     cutter: &'r Cutter<S>,
-    row: &'r [PrimRef<S>],
-    price: S,
-    last: &'r mut Vec<u8>,
+    rows: [&'r [PrimRef<S>]; 2],
+    prices: [S; 2],
+    last: &'r mut [Vec<u8>; 2],
+}
+
+/// What is known of a row's leaves that may end at a place, by where they begin.
+struct Ends<S: Scalar, I: Simd> {
+    mins: [S::Times8<I>; 3],
+    maxs: [S::Times8<I>; 3],
+    /// The least cost of all before the leaf.
+    before: S::Times8<I>,
+    /// The least cost of all.
+    least: S,
 }
 
 impl<S: Scalar> Kernel for Cut<'_, S> {
@@ -104,32 +125,41 @@ impl<S: Scalar> Kernel for Cut<'_, S> {
         let turns: [_; LEAF_WIDTH] = core::array::from_fn(only);
         let scale = splat(self.cutter.scale);
 
-        let (mut mins, mut maxs) = ([splat(S::INFINITY); 3], [splat(S::NEG_INFINITY); 3]);
-        // The least cost of all before the leaf.
-        let mut before = splat(S::INFINITY);
-        let mut least = S::ZERO;
-        self.last.clear();
-        for (place, reference) in self.row.iter().enumerate() {
+        let none = || Ends::<S, I> {
+            mins: [splat(S::INFINITY); 3],
+            maxs: [splat(S::NEG_INFINITY); 3],
+            before: splat(S::INFINITY),
+            least: S::ZERO,
+        };
+        let mut ends = [none(), none()];
+        self.last.iter_mut().for_each(Vec::clear);
+        let [first, second] = self.rows;
+        for place in 0..first.len().max(second.len()) {
             let end = place % LEAF_WIDTH;
             let begins = turns[end];
-            for axis in 0..3 {
-                let (low, high) = (splat(reference.aabb.min[axis]), splat(reference.aabb.max[axis]));
-                mins[axis] = low.where_else(begins, low.min(mins[axis]));
-                maxs[axis] = high.where_else(begins, high.max(maxs[axis]));
+            let blocks = load(&self.cutter.costs[end]);
+            for ((row, ends), (&price, last)) in
+                self.rows.iter().zip(&mut ends).zip(self.prices.iter().zip(&mut *self.last))
+            {
+                let Some(reference) = row.get(place) else { continue };
+                for axis in 0..3 {
+                    let (low, high) = (splat(reference.aabb.min[axis]), splat(reference.aabb.max[axis]));
+                    ends.mins[axis] = low.where_else(begins, low.min(ends.mins[axis]));
+                    ends.maxs[axis] = high.where_else(begins, high.max(ends.maxs[axis]));
+                }
+                ends.before = splat(ends.least).where_else(begins, ends.before);
+                let x = (ends.maxs[0] - ends.mins[0]) * scale;
+                let y = (ends.maxs[1] - ends.mins[1]) * scale;
+                let z = (ends.maxs[2] - ends.mins[2]) * scale;
+                let costs = ends.before + (x * y + y * z + z * x) * blocks;
+                let [low, high] = costs.to_halves();
+                let four = low.min(high);
+                let lowest = min(min(four.lane(0), four.lane(1)), min(four.lane(2), four.lane(3)));
+                let lane = S::Times8::<I>::bits(costs.le(splat(lowest))).trailing_zeros() as usize;
+                // No more than there are, even where areas overflow.
+                last.push(count(lane % LEAF_WIDTH, end).min(place + 1) as u8);
+                ends.least = lowest + price;
             }
-            before = splat(least).where_else(begins, before);
-            let x = (maxs[0] - mins[0]) * scale;
-            let y = (maxs[1] - mins[1]) * scale;
-            let z = (maxs[2] - mins[2]) * scale;
-            let costs = before + (x * y + y * z + z * x) * load(&self.cutter.costs[end]);
-            let [first, second] = costs.to_halves();
-            let mut four = [S::ZERO; 4];
-            first.min(second).store(&mut four);
-            let lowest = min(min(four[0], four[1]), min(four[2], four[3]));
-            let lane = S::Times8::<I>::bits(costs.le(splat(lowest))).trailing_zeros() as usize;
-            // No more than there are, even where areas overflow.
-            self.last.push(count(lane % LEAF_WIDTH, end).min(place + 1) as u8);
-            least = lowest + self.price;
         }
     }
 }
@@ -148,7 +178,14 @@ mod tests {
     fn lengths(row: &[PrimRef], leaves: usize, block_size: usize) -> Vec<usize> {
         let aabb = bounds(row);
         let mut runs = Vec::new();
-        Cutter::new(leaves, block_size, aabb.area_scale()).cut(row, &aabb, &mut Vec::new(), &mut runs);
+        // Beside another row, and without one.
+        let mut last = [Vec::new(), Vec::new()];
+        let cutter = Cutter::new(leaves, block_size, aabb.area_scale());
+        cutter.cut([(&row[..row.len() / 2], &aabb), (row, &aabb)], &mut last);
+        let beside = last[1].clone();
+        cutter.cut([(row, &aabb), (&[], &aabb)], &mut last);
+        assert!(last[0] == beside && last[1].is_empty());
+        Cutter::append(row, &beside, &mut runs);
         let mut next = 0;
         for run in &runs {
             assert_eq!(run.leaf.slots().start, next);
