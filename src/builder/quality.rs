@@ -1,7 +1,7 @@
 //! The presets.
 
 use crate::build::Optimise;
-use crate::build::heuristic::{BinnedSah, BuildNode, Heuristic, Split};
+use crate::build::heuristic::{BinnedSah, BuildNode, Heuristic, Proposal, Split};
 use crate::geometry::Scalar;
 
 /// How much time a build may take for how quick a tree: a heuristic, and how much of its tree is reinserted.
@@ -40,6 +40,10 @@ impl Quality {
 impl<S: Scalar> Heuristic<S> for Quality {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
         BinnedSah::new(16).split(node)
+    }
+
+    fn proposal(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
+        BinnedSah::new(16).proposal(node)
     }
 
     fn cluster_size(&self) -> usize {

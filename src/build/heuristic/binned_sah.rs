@@ -1,7 +1,7 @@
 //! The surface area heuristic on a few planes.
 
 use super::bins::{Bins, Plane};
-use super::{BuildNode, Heuristic, SahCost, Split};
+use super::{BuildNode, Heuristic, Proposal, SahCost, Split};
 use crate::geometry::{Aabb, Scalar};
 use crate::simd::Backend;
 
@@ -45,11 +45,15 @@ impl Default for BinnedSah {
 
 impl<S: Scalar> Heuristic<S> for BinnedSah {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
+        self.proposal(node).split
+    }
+
+    fn proposal(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
         if SahCost::is_block(node) {
-            return Split::Leaf;
+            return Split::Leaf.into();
         }
-        self.plane(node).map_or(Split::Leaf, |best| {
-            self.cost.split_or_leaf(node, best.split, best.weighted_area.to_f64())
+        self.plane(node).map_or(Split::Leaf.into(), |best| {
+            self.cost.split_or_leaf(node, best.proposal, best.weighted_area.to_f64())
         })
     }
 }

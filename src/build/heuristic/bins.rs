@@ -2,6 +2,7 @@
 
 use super::Split;
 use super::grid::Grid;
+use super::proposal::{Proposal, Sides};
 use crate::build::reference::{PrimRef, three};
 use crate::geometry::{Aabb, Axis, Scalar};
 use crate::simd::{Halves, Kernel, Lanes};
@@ -21,7 +22,7 @@ pub(super) struct Bins<'r, S, const N: usize> {
 /// A plane, and the sum of the sides' areas times their counts.
 pub(super) struct Plane<S> {
     pub weighted_area: S,
-    pub split: Split<S>,
+    pub proposal: Proposal<S>,
     /// The area that the sides have in common.
     pub overlap: S,
 }
@@ -47,9 +48,13 @@ impl<S: Scalar, const N: usize> Kernel for Bins<'_, S, N> {
         let filled = self.fill(isa, scale);
         let costs = [self.costs(isa, &filled, 0), self.costs(isa, &filled, 1), self.costs(isa, &filled, 2)];
         let (axis, bin, weighted_area) = least(isa, &costs)?;
-        let position = self.span.min[axis] + S::from_count(bin as i32) / scale[axis];
-        let overlap = filled.overlap(isa, axis, bin).scaled_half_area(self.area_scale);
-        Some(Plane { weighted_area, split: Split::Plane { axis: Axis::ALL[axis], position }, overlap })
+        let (origin, scale, first) = (self.span.min[axis], scale[axis], S::from_count(bin as i32));
+        let [left, right] = filled.sides(isa, axis, bin);
+        let overlap = to_box(isa, left.min(right)).scaled_half_area(self.area_scale);
+        let (axis, boxes) = (Axis::ALL[axis], [to_box(isa, left), to_box(isa, right)]);
+        let split = Split::Plane { axis, position: origin + first / scale };
+        let sides = Some(Sides { axis, origin, scale, bin: first, boxes });
+        Some(Plane { weighted_area, proposal: Proposal { split, sides }, overlap })
     }
 }
 
@@ -118,17 +123,16 @@ impl<S: Scalar, I: Simd, const N: usize> Filled<S, I, N> {
         Self { boxes: [[S::Times8::splat(isa, S::NEG_INFINITY); N]; 3], counts: [[0; N]; 3] }
     }
 
-    /// What the boxes before a bin and those from it on have in common.
+    /// The boxes before a bin, and those from it on.
     #[inline(always)]
-    fn overlap(&self, isa: I, axis: usize, border: usize) -> Aabb<S> {
+    fn sides(&self, isa: I, axis: usize, border: usize) -> [S::Times8<I>; 2] {
         let nothing = S::Times8::splat(isa, S::NEG_INFINITY);
         let (mut left, mut right) = (nothing, nothing);
         for bin in 0..N {
             let side = if bin < border { &mut left } else { &mut right };
             *side = side.max(self.boxes[axis][bin]);
         }
-        let [negated_min, max] = left.min(right).to_halves();
-        Aabb { min: three(S::Times4::splat(isa, S::ZERO) - negated_min), max: three(max) }
+        [left, right]
     }
 
     #[inline(always)]
@@ -147,6 +151,13 @@ impl<S: Scalar, I: Simd, const N: usize> Filled<S, I, N> {
         self.add(1, y as usize % N, aabb, 1);
         self.add(2, z as usize % N, aabb, 1);
     }
+}
+
+/// A box whose minimum is negated.
+#[inline(always)]
+fn to_box<S: Scalar, I: Simd>(isa: I, aabb: S::Times8<I>) -> Aabb<S> {
+    let [negated_min, max] = aabb.to_halves();
+    Aabb { min: three(S::Times4::splat(isa, S::ZERO) - negated_min), max: three(max) }
 }
 
 /// All on one side of each plane: the box's extents and the number of references.

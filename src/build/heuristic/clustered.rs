@@ -1,6 +1,6 @@
 //! Splits of clusters.
 
-use super::{BuildNode, Heuristic, Split};
+use super::{BuildNode, Heuristic, Proposal, Split};
 use crate::build::Optimise;
 use crate::geometry::Scalar;
 
@@ -25,6 +25,10 @@ pub struct Clustered<H> {
 impl<S: Scalar, H: Heuristic<S>> Heuristic<S> for Clustered<H> {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
         self.heuristic.split(node)
+    }
+
+    fn proposal(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
+        self.heuristic.proposal(node)
     }
 
     fn cluster_size(&self) -> usize {

@@ -17,6 +17,7 @@ mod grid;
 mod median;
 mod midpoint;
 mod morton;
+mod proposal;
 mod sah;
 mod spatial_sah;
 mod sweep_sah;
@@ -27,6 +28,7 @@ pub use median::Median;
 pub use midpoint::Midpoint;
 pub use morton::Morton;
 pub(super) use morton::codes;
+pub use proposal::Proposal;
 pub use sah::SahCost;
 pub use spatial_sah::SpatialSah;
 pub use sweep_sah::SweepSah;
@@ -74,6 +76,12 @@ pub trait Heuristic<S: Scalar>: Sync {
     /// Proposes how to split `node`, which has at least two references.
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S>;
 
+    /// The same, with what this crate's own heuristics know beside, which is believed: not to be forged.
+    #[doc(hidden)]
+    fn proposal(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
+        self.split(node).into()
+    }
+
     /// Instead of splits: a code for each reference, its place along a curve through `scene`, the box around
     /// everything. References are sorted by their codes, equal ones as in the input, and each node is split where
     /// the highest bit changes, in one pass from the leaves up (Lauterbach et al. 2009; Apetrei 2014). As many codes as
@@ -101,6 +109,10 @@ pub trait Heuristic<S: Scalar>: Sync {
 impl<S: Scalar, H: Heuristic<S> + ?Sized> Heuristic<S> for &H {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
         (**self).split(node)
+    }
+
+    fn proposal(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
+        (**self).proposal(node)
     }
 
     fn codes(&self, references: &[PrimRef<S>], scene: &Aabb<S>) -> Option<Vec<u64>> {

@@ -1,6 +1,6 @@
 //! The surface area heuristic's costs.
 
-use super::{BuildNode, Split};
+use super::{BuildNode, Proposal, Split};
 use crate::geometry::Scalar;
 
 /// The costs that the surface area heuristic weighs against each other.
@@ -32,22 +32,22 @@ impl Default for SahCost {
 }
 
 impl SahCost {
-    /// The best split, whose sides' areas times numbers of primitives sum to `weighted_area`, all areas scaled by the node's
+    /// The best proposal, whose sides' areas times numbers of primitives sum to `weighted_area`, all areas scaled by the node's
     /// own `area_scale`; or a leaf, where there may be one and it costs no more.
     pub(super) fn split_or_leaf<S: Scalar>(
         &self,
         node: &BuildNode<'_, S>,
-        split: Split<S>,
+        best: Proposal<S>,
         weighted_area: f64,
-    ) -> Split<S> {
+    ) -> Proposal<S> {
         let n = node.references.len();
         if n > node.max_leaf_size {
-            return split;
+            return best;
         }
         let area = node.aabb.scaled_half_area(node.aabb.area_scale()).to_f64();
         let leaf_cost = self.intersection * n.div_ceil(node.block_size) as f64 * area;
         let tests = self.intersection * weighted_area / node.block_size as f64;
-        if leaf_cost <= self.traversal * area + tests { Split::Leaf } else { split }
+        if leaf_cost <= self.traversal * area + tests { Split::Leaf.into() } else { best }
     }
 
     /// Whether one block holds all, which no split makes cheaper.

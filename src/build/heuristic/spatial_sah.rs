@@ -1,6 +1,6 @@
 //! The surface area heuristic with splits in space.
 
-use super::{BinnedSah, BuildNode, Heuristic, SahCost, Split};
+use super::{BinnedSah, BuildNode, Heuristic, Proposal, SahCost, Split};
 use crate::build::cut::halves;
 use crate::geometry::{Aabb, Axis, Scalar};
 
@@ -41,14 +41,18 @@ const SLICES: usize = 16;
 
 impl<S: Scalar> Heuristic<S> for SpatialSah {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
+        self.proposal(node).split
+    }
+
+    fn proposal(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
         if SahCost::is_block(node) {
-            return Split::Leaf;
+            return Split::Leaf.into();
         }
         let scale = node.aabb.area_scale();
         let plane = self.planes.plane(node);
-        let (mut split, mut weighted_area) = match &plane {
-            Some(plane) => (plane.split, plane.weighted_area),
-            None => (Split::Leaf, S::INFINITY),
+        let (mut best, mut weighted_area) = match &plane {
+            Some(plane) => (plane.proposal, plane.weighted_area),
+            None => (Split::Leaf.into(), S::INFINITY),
         };
         let least = self.overlap * node.scene.scaled_half_area(scale).to_f64();
         if node.spare > 0 && plane.is_none_or(|plane| plane.overlap.to_f64() > least) {
@@ -57,11 +61,11 @@ impl<S: Scalar> Heuristic<S> for SpatialSah {
                     Slices::of(node, axis).and_then(|slices| slices.best(node, scale))
                     && cost < weighted_area
                 {
-                    (split, weighted_area) = (Split::Spatial { axis, position }, cost);
+                    (best, weighted_area) = (Split::Spatial { axis, position }.into(), cost);
                 }
             }
         }
-        self.planes.cost.split_or_leaf(node, split, weighted_area.to_f64())
+        self.planes.cost.split_or_leaf(node, best, weighted_area.to_f64())
     }
 
     fn spare(&self, primitives: usize) -> usize {

@@ -60,7 +60,8 @@ impl<S: Scalar> Heuristic<S> for SweepSah {
                 (axis, best) = (next, sweep);
             }
         }
-        self.cost.split_or_leaf(node, Split::Count { axis, left: best.left }, best.weighted_area)
+        let best_split = Split::Count { axis, left: best.left };
+        self.cost.split_or_leaf(node, best_split.into(), best.weighted_area).split
     }
 }
 
