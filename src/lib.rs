@@ -30,7 +30,7 @@
 //!   or [`Precise`]; each with its errors and its price in the README.
 //! - How it is built: [`Bvh::build`] for the good default, [`Bvh::builder`] for a [`Quality`], one
 //!   of the [`heuristic`]s or your own, how much to [`Optimise`], the leaf size, threads, a time budget, and what to do
-//!   with invalid primitives.
+//!   with invalid primitives. In memory that earlier ones left: [`Workspace`].
 //! - How it lies in memory, by type: [`WideTree`] for speed, what [`Bvh`] has by itself, [`CompactTree`] for few bytes, or the
 //!   binary [`Tree`]; and
 //!   what it is computed with, [`InstructionSet`], the best that the processor has unless told.

@@ -78,7 +78,7 @@ pub(crate) fn for_each<T>(items: &mut [T], f: impl Fn(usize, &mut T)) {
 /// The items of all parts, one after another, in memory for as many.
 ///
 /// # Panics
-/// If a part has fewer items than it says, or there is less memory.
+/// If a part has fewer items than it says, or `memory` is not for as many as asked for.
 pub(crate) fn concat<T: Send, I: ExactSizeIterator<Item = T> + Send>(
     parts: Vec<I>,
     memory: impl FnOnce(usize) -> Vec<T>,

@@ -15,7 +15,8 @@ use bvhkit::{
 use common::heuristics;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 fn triangles<S: Scalar>(n: usize) -> Vec<Fast<Triangle<S>>> {
     let mut rng = Pcg64Mcg::seed_from_u64(n as u64);
@@ -103,28 +104,86 @@ fn a_workspace_is_good_for_more_after_a_build_that_failed() {
     }
 }
 
+/// Wherever a build is told to stop, with everything: an error, and never less than a whole hierarchy.
+#[test]
+fn builds_stop_wherever_they_are_told_to() {
+    fn with<H: Heuristic<f32> + Clone, L: Layout<Fast<Triangle>> + PartialEq>(
+        what: &str,
+        builder: &Builder<Fast<Triangle>, H, L>,
+        triangles: &[Fast<Triangle>],
+        workspace: &mut Workspace,
+    ) {
+        let whole = builder.clone().build(triangles.iter().copied()).unwrap();
+        for stop in 0.. {
+            let asked = Arc::new(AtomicUsize::new(0));
+            let asks = asked.clone();
+            let watcher = move |_| if asks.fetch_add(1, Relaxed) < stop { Pace::Steady } else { Pace::Stop };
+            match builder.clone().watch(watcher).build_in(workspace, triangles.iter().copied()) {
+                Err(error) => assert_eq!(error, BuildError::Stopped, "{what}, {stop}"),
+                Ok(bvh) => {
+                    assert!(asked.load(Relaxed) <= stop && bvh.layout() == whole.layout(), "{what}, {stop}");
+                    return;
+                }
+            }
+        }
+    }
+    let _turn = turn();
+    let mut workspace = Workspace::new();
+    for size in [1, 9, 1_000, 12_000] {
+        let triangles = triangles(size);
+        for (name, heuristic) in &heuristics::all() {
+            let builder = Bvh::builder().heuristic(&**heuristic).threads(1);
+            with(name, &builder, &triangles, &mut workspace);
+            with(name, &builder.layout::<Tree>(), &triangles, &mut workspace);
+        }
+        for quality in [Quality::Fast, Quality::Balanced] {
+            let builder = Bvh::builder().quality(quality).threads(1);
+            with(&format!("{quality:?}"), &builder, &triangles, &mut workspace);
+        }
+    }
+}
+
 /// Counted in allocations of any time, on one thread: lists of tasks come and go, buffers stay.
 #[test]
 fn later_builds_take_the_memory_of_earlier_ones() {
+    fn is_shared_by_threads<T: Send + Sync>(_: &T) {}
     let _turn = turn();
     let triangles = triangles::<f32>(100_000);
     for quality in [Quality::Fast, Quality::Balanced] {
         let mut workspace = Workspace::new();
+        is_shared_by_threads(&workspace);
         let builder = Bvh::builder().quality(quality).threads(1);
-        let mut peaks = [0; 3].map(|_: usize| {
-            let input = triangles.clone();
+        // The most that is new while so many are built.
+        let mut peak = |count: usize| {
+            let input = triangles[..count].to_vec();
             let (bvh, peak) = memory::peak(|| builder.clone().build_in(&mut workspace, input).unwrap());
+            let bytes = bvh.report().memory_bytes;
             bvh.recycle(&mut workspace);
-            peak
-        });
-        let first = core::mem::take(&mut peaks[0]);
-        assert!(workspace.bytes() > 100 * triangles.len(), "{} bytes kept", workspace.bytes());
-        let later = peaks[1].max(peaks[2]) as f64 / first as f64;
-        assert!(later < 0.35, "{quality:?}: {later} of the first build's memory");
-        let small = || triangles[..100].iter().copied();
-        let wide = builder.clone().build_in(&mut workspace, small()).unwrap();
-        let binary = builder.layout::<Tree>().build_in(&mut workspace, small()).unwrap();
-        let bytes = wide.report().memory_bytes.max(binary.report().memory_bytes);
-        assert!(bytes < 20_000, "{bytes}: a small one has none of a large one's");
+            (peak as f64, bytes)
+        };
+        let (first, _) = peak(90_000);
+        // Small ones do not lose what they cannot use; what grows a little does not need new memory each time.
+        for count in [90_000, 100, 0, 90_000, 91_000, 92_000, 93_000] {
+            let (peak, bytes) = peak(count);
+            assert!(count == 91_000 || peak < 0.35 * first, "{quality:?}, {count}: {peak}, at first {first}");
+            assert!(bytes < 100 * count + 2_000, "{quality:?}, {count}: {bytes} bytes");
+        }
+        assert!(workspace.bytes() > 100 * 90_000, "{} bytes kept", workspace.bytes());
+        let small = triangles[..100].iter().copied();
+        let binary = builder.layout::<Tree>().build_in(&mut workspace, small).unwrap();
+        assert!(binary.report().memory_bytes < 20_000, "a small one has none of a large one's");
+    }
+}
+
+/// What is not kept is freed as soon as it can be.
+#[test]
+fn a_build_without_a_workspace_peaks_no_higher_than_it_has_to() {
+    let _turn = turn();
+    let triangles = triangles::<f32>(100_000);
+    for (quality, most) in [(Quality::Fast, 95), (Quality::Balanced, 115)] {
+        let input = triangles.clone();
+        let builder = Bvh::builder().quality(quality).threads(1);
+        let (_bvh, peak) = memory::peak(|| builder.build(input).unwrap());
+        assert!(peak < most * triangles.len(), "{quality:?}: {peak}");
     }
 }

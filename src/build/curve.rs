@@ -1,5 +1,6 @@
 //! References in the order of a curve: keys of their codes and places, sorted.
 
+use super::buffers::Buffers;
 use super::radix::sort;
 use super::subtree::{Parent, Subtree, TASK_SIZE, task_child};
 use crate::geometry::{Aabb, Scalar};
@@ -20,8 +21,8 @@ pub(super) struct Curve {
 
 impl Curve {
     /// Of at least one code. Keys have `bits` at the most: codes lose their lowest if they have too many. Not fewer than
-    /// places take. `spare` is memory.
-    pub fn new(codes: Vec<u64>, bits: usize, spare: &mut Vec<u64>) -> Self {
+    /// places take.
+    pub fn new<S>(codes: Vec<u64>, bits: usize, buffers: &mut Buffers<S>) -> Self {
         let place_bits = usize::BITS - (codes.len() - 1).leading_zeros();
         let code_bits = u64::BITS - codes.iter().fold(0, |all, code| all | code).leading_zeros();
         let lost = (code_bits + place_bits).saturating_sub(bits as u32);
@@ -29,7 +30,10 @@ impl Curve {
         parallel::for_each(&mut keys, |place, code| {
             *code = (*code >> lost).unbounded_shl(place_bits) | place as u64;
         });
-        sort(&mut keys, spare, place_bits, place_bits + code_bits - lost);
+        sort(&mut keys, &mut buffers.spare_keys, place_bits, place_bits + code_bits - lost);
+        if !buffers.are_kept {
+            buffers.spare_keys = Vec::new();
+        }
         Self { keys, place: (1 << place_bits) - 1 }
     }
 

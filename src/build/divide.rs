@@ -1,7 +1,7 @@
 //! One step of the build: a set of references becomes a leaf or two sets, each with a part of the memory.
 
 use super::cut::Cut;
-use super::heuristic::{BuildNode, Heuristic, Proposal, Split};
+use super::heuristic::{BuildNode, Heuristic, Own, Proposal, Split};
 use super::reference::{PrimRef, bounds, centroids};
 use crate::geometry::{Aabb, Axis, Scalar};
 
@@ -47,15 +47,18 @@ impl<'r, S: Scalar> Set<'r, S> {
         if n < 2 {
             return Err(self);
         }
-        let Proposal { split, sides } = rules.heuristic.proposal(&BuildNode {
-            aabb: self.aabb,
-            references: self.references(),
-            depth: self.depth,
-            max_leaf_size: rules.max_leaf_size,
-            block_size: rules.block_size,
-            scene: *scene,
-            spare: self.memory.len() - n,
-        });
+        let Proposal { split, sides } = rules.heuristic.proposal(
+            &BuildNode {
+                aabb: self.aabb,
+                references: self.references(),
+                depth: self.depth,
+                max_leaf_size: rules.max_leaf_size,
+                block_size: rules.block_size,
+                scene: *scene,
+                spare: self.memory.len() - n,
+            },
+            Own::BUILD,
+        );
         let fits = |n: usize| n > 0 && self.depth + 1 + ceil_log2(n) <= rules.max_depth;
         let room = self.memory.len();
         let references = &mut self.memory[..n];

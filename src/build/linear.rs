@@ -33,7 +33,7 @@ pub(super) fn build<S: Scalar>(
     watch: &Watch<'_>,
     buffers: &mut Buffers<S>,
 ) -> Subtree<S> {
-    let curve = Curve::new(codes, depth, &mut buffers.spare_keys);
+    let curve = Curve::new(codes, depth, buffers);
     let (mut top, tasks) = curve.divide();
     let order = Order { references, curve: &curve, max_leaf_size };
     let built = parallel::map(tasks, |task: Range<usize>| {

@@ -15,24 +15,24 @@ const FEW: usize = 256;
 /// So many keys go into a bucket, if they are spread evenly: as many as the second cache holds twice.
 const BUCKET: usize = 1 << 15;
 
-/// Sorts keys that ascend already as far as they are equal above the bit `low`; there are no bits from `high` on. `buckets`
+/// Sorts keys that ascend already as far as they are equal above the bit `low`; there are no bits from `high` on. `spare`
 /// is memory.
 ///
 /// A radix sort: by the highest bits into buckets, and those, at the same time, by four digits from the lowest up. What is equal in
 /// all of them, which is little but in the densest places, is sorted by comparisons. 6 ns a key; by the highest digit into 2,048
 /// buckets, and those by two digits more, it was 8, since small buckets clear more places than they have keys.
-pub(super) fn sort(keys: &mut Vec<u64>, buckets: &mut Vec<u64>, low: u32, high: u32) {
+pub(super) fn sort(keys: &mut Vec<u64>, spare: &mut Vec<u64>, low: u32, high: u32) {
     if keys.len() < FEW {
         return keys.sort_unstable();
     }
-    buckets.resize(keys.len(), 0);
+    spare.resize(keys.len(), 0);
     let bits = (keys.len() / BUCKET).checked_ilog2().unwrap_or(0).min(DIGIT);
     if bits == 0 {
-        return sort_bucket(keys, buckets, low, high);
+        return sort_bucket(keys, spare, low, high);
     }
     let top = high.saturating_sub(bits).max(low);
-    let mut ends = scatter(keys, buckets, top);
-    let (mut sources, mut targets) = (buckets.as_mut_slice(), keys.as_mut_slice());
+    let mut ends = scatter(keys, spare, top);
+    let (mut sources, mut targets) = (spare.as_mut_slice(), keys.as_mut_slice());
     let mut done = 0;
     let parts = ends.iter_mut().map(|end| {
         let len = *end as usize - core::mem::replace(&mut done, *end as usize);
@@ -44,7 +44,7 @@ pub(super) fn sort(keys: &mut Vec<u64>, buckets: &mut Vec<u64>, low: u32, high: 
     });
     let parts = parts.filter(|(bucket, _)| bucket.len() > 1).collect();
     parallel::map(parts, |(bucket, spare)| sort_bucket(bucket, spare, low, top));
-    core::mem::swap(keys, buckets);
+    core::mem::swap(keys, spare);
 }
 
 /// Sorts a bucket below the bit `high`.

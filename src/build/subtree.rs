@@ -1,6 +1,6 @@
 //! Parts of a tree that were built by themselves, and the tree made of them.
 
-use super::buffers::{Buffers, buffer};
+use super::buffers::{Buffers, fitting};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
 use crate::tree::{Child, Node, Run};
@@ -91,7 +91,7 @@ pub(super) fn join<S: Scalar>(
 ) -> Subtree<S> {
     // Which nodes and slots follow one another, and by how much those of subtrees move.
     let (mut nodes, mut slots) = (Vec::<(Range<usize>, Option<usize>, Move)>::new(), Vec::<&[u32]>::new());
-    let mut runs = buffer(&mut buffers.runs, subtrees.iter().map(|piece| piece.runs.len()).sum());
+    let mut runs = fitting(&mut buffers.runs, subtrees.iter().map(|piece| piece.runs.len()).sum());
     let mut end = Move { node: 0, slot: 0 };
     let mut open = vec![(None, top.root)];
     while let Some((parent, child)) = open.pop() {
@@ -117,8 +117,8 @@ pub(super) fn join<S: Scalar>(
         nodes.map(move |node| Node { children: node.children.map(|child| by.of(child)), ..*node })
     });
     let slots = slots.into_iter().map(|slots| slots.iter().copied());
-    let indices = parallel::concat(slots.collect(), |len| buffer(&mut buffers.indices, len));
-    let nodes = parallel::concat(parts.collect(), |len| buffer(&mut buffers.nodes, len));
+    let indices = parallel::concat(slots.collect(), |len| fitting(&mut buffers.indices, len));
+    let nodes = parallel::concat(parts.collect(), |len| fitting(&mut buffers.nodes, len));
     Subtree { nodes, root: top.root, indices, runs }
 }
 

@@ -239,10 +239,11 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// # Errors
     /// [`BuildError`], whose messages say what is wrong, where, and what to do.
     pub fn build(self, primitives: impl IntoIterator<Item = P>) -> Result<Bvh<P, L>, BuildError> {
-        self.build_in(&mut Workspace::for_one(), primitives)
+        self.build_in(&mut Workspace::for_one_build(), primitives)
     }
 
-    /// The same hierarchy as [`build`](Self::build) makes, in memory that earlier builds have left behind: see [`Workspace`].
+    /// The same hierarchy as [`build`](Self::build) makes, in memory that earlier builds have left behind: see [`Workspace`]. What it
+    /// lies in comes back by [`Bvh::recycle`].
     ///
     /// # Errors
     /// As [`build`](Self::build).
@@ -284,7 +285,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         };
         let watch = Watch::new(pace);
         let mut tree = build_tree(&mut workspace.build, &rules, &watch).ok_or(BuildError::Stopped)?;
-        workspace.tree_is_built();
+        workspace.build.are_done();
         let optimise = self.optimise.or_else(|| self.heuristic.optimise());
         if let Some(optimise) = optimise.filter(|optimise| optimise.rounds > 0) {
             optimise.run(&mut tree, || watch.ask() == Pace::Steady);

@@ -1,7 +1,7 @@
 //! The presets.
 
 use crate::build::Optimise;
-use crate::build::heuristic::{BinnedSah, BuildNode, Heuristic, Proposal, Split};
+use crate::build::heuristic::{BinnedSah, BuildNode, Heuristic, Own, Proposal, Split};
 use crate::geometry::Scalar;
 
 /// How much time a build may take for how quick a tree: a heuristic, and how much of its tree is reinserted.
@@ -42,8 +42,8 @@ impl<S: Scalar> Heuristic<S> for Quality {
         BinnedSah::new(16).split(node)
     }
 
-    fn proposal(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
-        BinnedSah::new(16).proposal(node)
+    fn proposal(&self, node: &BuildNode<'_, S>, own: Own) -> Proposal<S> {
+        BinnedSah::new(16).proposal(node, own)
     }
 
     fn cluster_size(&self) -> usize {

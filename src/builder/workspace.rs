@@ -3,6 +3,7 @@
 use crate::build;
 use crate::geometry::Scalar;
 use crate::layout;
+use core::fmt;
 
 /// Memory that builds leave behind and later ones take: for who builds often, such as each frame.
 ///
@@ -10,10 +11,12 @@ use crate::layout;
 /// back as soon as they are freed: from about a million primitives on that is a quarter to a half of a build. The README has
 /// the figures. A workspace keeps what [`Builder::build_in`](crate::Builder::build_in) takes from it, and what
 /// [`Bvh::recycle`](crate::Bvh::recycle) gives to it of a hierarchy that is no longer needed. Hierarchies are the same with and
-/// without; of any types and sizes, one after another.
+/// without; of any types with the same scalar and any sizes, one after another.
 ///
-/// It holds as much as its largest build took: see [`bytes`](Self::bytes). Dropping it frees that. After a build that failed it may
-/// hold less.
+/// A hierarchy takes its own memory with it, and brings it back by `recycle`. It gets none that is more than twice what it needs;
+/// one that is larger than all before takes up to an eighth more than it needs, since it may go on to grow. A workspace holds
+/// about as much as its largest build took, see [`bytes`](Self::bytes), after a build that failed perhaps less. Dropping it
+/// frees that.
 ///
 /// ```
 /// use bvhkit::{Bvh, Quality, Ray, Sphere, Workspace};
@@ -30,18 +33,22 @@ use crate::layout;
 /// # assert!(workspace.bytes() > 0);
 /// # Ok::<(), bvhkit::BuildError>(())
 /// ```
-#[derive(Debug)]
 pub struct Workspace<S: Scalar = f32> {
     pub(crate) build: build::Buffers<S>,
     pub(crate) layout: layout::Buffers,
-    /// No other build will need what is in it.
-    is_for_one: bool,
 }
 
 impl<S: Scalar> Default for Workspace<S> {
     fn default() -> Self {
-        let (build, layout) = (build::Buffers::default(), layout::Buffers::default());
-        Self { build, layout, is_for_one: false }
+        let mut workspace = Self::for_one_build();
+        workspace.build.are_kept = true;
+        workspace
+    }
+}
+
+impl<S: Scalar> fmt::Debug for Workspace<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Workspace").field("bytes", &self.bytes()).finish()
     }
 }
 
@@ -51,16 +58,9 @@ impl<S: Scalar> Workspace<S> {
         Self::default()
     }
 
-    /// Of a build that leaves nothing behind.
-    pub(super) fn for_one() -> Self {
-        Self { is_for_one: true, ..Self::default() }
-    }
-
-    /// Frees what the layout, which follows, does not need, if no build comes after.
-    pub(super) fn tree_is_built(&mut self) {
-        if self.is_for_one {
-            self.build = build::Buffers::default();
-        }
+    /// Of a build that leaves nothing behind, and frees what it does not need any more.
+    pub(super) fn for_one_build() -> Self {
+        Self { build: build::Buffers::default(), layout: layout::Buffers::default() }
     }
 
     /// Bytes of memory that it keeps.

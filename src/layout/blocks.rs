@@ -1,5 +1,6 @@
 //! Nodes and leaves of different sizes, one after another in line-aligned memory.
 
+use crate::build::fitting;
 use crate::parallel;
 use crate::simd::prefetch;
 use alloc::vec::Vec;
@@ -23,7 +24,7 @@ pub(super) struct Word(u64);
 /// faults, and made first builds of a process with `Quality::Fast` a fifth quicker (sponza 36 to 30 ms, dragon 27 to 23), but with
 /// `Quality::Balanced` up to two fifths slower (sponza 71 to 69, 92 and 99 ms): on a virtual machine, which waits for its host where
 /// it touches memory that was given back. The kernel had nothing to compact. Rays were quicker by 1 %.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Blocks {
     /// One line more than there is room for, less a word: somewhere in them the first line begins.
     words: Vec<Word>,
@@ -42,21 +43,22 @@ impl Blocks {
     /// No block has to begin at multiples of more.
     pub const ALIGN: usize = LINE;
 
-    /// The memory filled with other blocks, or new memory if it is too small or more than twice too large.
+    /// In the memory of others if that [fits](fitting).
     ///
     /// Parts are written independently, each by `write`, which is told its number. They are `ranges` of bytes, which begin
     /// with lines and follow one another from 0 on but for what is left of a line. If all are empty, none is written.
-    pub fn filled(self, ranges: &[Range<usize>], write: impl Fn(usize, &mut Part<'_>) + Sync + Send) -> Self {
+    pub fn filled(
+        memory: &mut Vec<Word>,
+        ranges: &[Range<usize>],
+        write: impl Fn(usize, &mut Part<'_>) + Sync + Send,
+    ) -> Self {
         let lines = ranges.last().map_or(0, |last| last.end).div_ceil(LINE);
         if lines == 0 {
             return Self::default();
         }
         let len = lines * WORDS + WORDS - 1;
-        let mut words = self.words;
+        let mut words = fitting(memory, len);
         words.clear();
-        if !(len..=2 * len).contains(&words.capacity()) {
-            words = Vec::with_capacity(len);
-        }
         let address = words.as_ptr().addr();
         let first = (address.next_multiple_of(LINE) - address) / size_of::<Word>();
         let (before, rest) = words.spare_capacity_mut()[..len].split_at_mut(first);
@@ -79,6 +81,11 @@ impl Blocks {
         // SAFETY: what is before and behind the lines was written above, and the parts, which are all lines, to their ends.
         unsafe { words.set_len(len) }
         Self { words, first, lines }
+    }
+
+    /// The memory, for others.
+    pub fn into_words(self) -> Vec<Word> {
+        self.words
     }
 
     /// Bytes of memory.
@@ -132,7 +139,7 @@ impl Clone for Blocks {
             // SAFETY: words are any bytes, and any bytes are some.
             unsafe { part.get_mut(0, words.len()) }.copy_from_slice(words);
         };
-        Self::default().filled(core::slice::from_ref(&(0..size_of_val(words))), copy)
+        Self::filled(&mut Vec::new(), core::slice::from_ref(&(0..size_of_val(words))), copy)
     }
 }
 
@@ -165,7 +172,7 @@ impl Part<'_> {
     /// Writes what lies at an offset.
     ///
     /// # Safety
-    /// A `T` is any bytes.
+    /// A `T` is any bytes, all of them initialised: it has no gaps.
     ///
     /// # Panics
     /// If it is not inside of the part, or not aligned.
@@ -199,21 +206,25 @@ mod tests {
     fn parts_are_written_and_the_rest_is_clear() {
         // What the allocator has at hand for the same size is not clear.
         drop(core::hint::black_box(alloc::vec![Word(u64::MAX); 384 / 8 + WORDS - 1]));
-        let blocks = Blocks::default().filled(&[0..100, 128..300, 320..320, 320..323], |number, part| {
-            if number == 2 {
-                return;
-            }
-            // SAFETY: bytes are any bytes.
-            let places: &mut [u8] = unsafe { part.get_mut(number, 1) };
-            assert_eq!(places, [0]);
-            places[0] = number as u8 + 1;
-        });
+        let blocks = Blocks::filled(
+            &mut Blocks::default(),
+            &[0..100, 128..300, 320..320, 320..323],
+            |number, part| {
+                if number == 2 {
+                    return;
+                }
+                // SAFETY: bytes are any bytes.
+                let places: &mut [u8] = unsafe { part.get_mut(number, 1) };
+                assert_eq!(places, [0]);
+                places[0] = number as u8 + 1;
+            },
+        );
         let bytes: Vec<u8> = blocks.words().iter().flat_map(|word| word.0.to_ne_bytes()).collect();
         assert!(blocks.words().as_ptr().addr().is_multiple_of(LINE));
         let mut expected = alloc::vec![0; 384];
         (expected[0], expected[129], expected[323]) = (1, 2, 4);
         assert_eq!(bytes, expected);
         assert_eq!(blocks.clone().words(), blocks.words());
-        assert_eq!(Blocks::default().filled(&[], |_, _| unreachable!()).words(), []);
+        assert_eq!(Blocks::filled(&mut Vec::new(), &[], |_, _| unreachable!()).words(), []);
     }
 }

@@ -1,6 +1,6 @@
 //! The wide tree, as planned: first where every block lies, then what is in it.
 
-use super::blocks::{Blocks, Part};
+use super::blocks::{Blocks, Part, Word};
 use super::buffers::Buffers;
 use super::form::{Form, Node};
 use super::plan::Plan;
@@ -102,7 +102,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         let Arrangement { sections, root } = arrangement.ok()?;
         let coordinates = [tree.aabb.min, tree.aabb.max];
         Some(Self {
-            blocks: Self::fill(sections, tree, contents, buffers.blocks()),
+            blocks: Self::fill(sections, tree, contents, buffers.words()),
             root,
             aabb: tree.aabb,
             len: tree.len(),
@@ -166,11 +166,11 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         sections: Vec<Section<S>>,
         tree: &Tree<S>,
         contents: &impl Contents<S>,
-        memory: Blocks,
+        memory: &mut Vec<Word>,
     ) -> Blocks {
         let ranges: Vec<_> =
             sections.iter().map(|section| section.start..section.start + section.bytes).collect();
-        memory.filled(&ranges, |number, part| {
+        Blocks::filled(memory, &ranges, |number, part| {
             let Section { start, blocks, children, .. } = &sections[number];
             let mut moved = Vec::with_capacity(N);
             for (place, block) in blocks.iter().enumerate() {
@@ -186,7 +186,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
                             (aabb, if is_block { child.behind(*start) } else { child })
                         }));
                         let node = F::Node::new(&moved);
-                        // SAFETY: nodes are plain data.
+                        // SAFETY: nodes are plain data without gaps, see `Node`.
                         unsafe { part.put(block.offset, node) }
                     }
                     What::Leaf(slots) => {

@@ -162,7 +162,7 @@ where
     }
 
     fn recycle(self, buffers: &mut Buffers) -> Tree<P::Scalar> {
-        buffers.keep_blocks(self.blocks);
+        buffers.keep_words(self.blocks.into_words());
         Tree { indices: self.form.into_indices(), ..Tree::default() }
     }
 }

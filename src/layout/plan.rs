@@ -179,8 +179,8 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
                 continue;
             }
             let forest = &self.weights[child.first as usize].forest;
-            // The fewest roots for that cost.
-            let fewest = (1..=k).find(|&fewer| forest[fewer - 1] <= forest[k - 1]).unwrap_or(k);
+            // The fewest roots for that cost: fewer never cost less, and more no more.
+            let fewest = 1 + forest.iter().filter(|&&cost| cost > forest[k - 1]).count();
             if fewest == 1 {
                 roots.push((child, aabb));
             } else {

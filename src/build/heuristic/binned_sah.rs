@@ -1,7 +1,7 @@
 //! The surface area heuristic on a few planes.
 
 use super::bins::{Bins, Plane};
-use super::{BuildNode, Heuristic, Proposal, SahCost, Split};
+use super::{BuildNode, Heuristic, Own, Proposal, SahCost, Split};
 use crate::geometry::{Aabb, Scalar};
 use crate::simd::Backend;
 
@@ -11,6 +11,10 @@ use crate::simd::Backend;
 /// Centroids are counted into bins over the node's box, each bin with the box around its
 /// primitives; a sweep over the bins then finds the best plane between two. If all centroids fall
 /// into one bin, bins over the box around the centroids are tried instead.
+///
+/// The builder asks on which side of the plane a reference was counted, and knows the boxes of both sides: a build takes a tenth
+/// longer if a heuristic of one's own passes on what this one's `split` answers, and what lies within a rounding of a plane may
+/// go to the other side of it.
 ///
 /// Wald's bins span the box around the centroids in the first place. Spanning the node's box puts
 /// planes where the scene has its walls: with 16 bins a diffuse ray visits 50 nodes of Crytek's
@@ -45,10 +49,10 @@ impl Default for BinnedSah {
 
 impl<S: Scalar> Heuristic<S> for BinnedSah {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
-        self.proposal(node).split
+        self.proposal(node, Own::BUILD).split
     }
 
-    fn proposal(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
+    fn proposal(&self, node: &BuildNode<'_, S>, _: Own) -> Proposal<S> {
         if SahCost::is_block(node) {
             return Split::Leaf.into();
         }

@@ -1,6 +1,6 @@
 //! Splits of clusters.
 
-use super::{BuildNode, Heuristic, Proposal, Split};
+use super::{BuildNode, Heuristic, Own, Proposal, Split};
 use crate::build::Optimise;
 use crate::geometry::Scalar;
 
@@ -27,8 +27,8 @@ impl<S: Scalar, H: Heuristic<S>> Heuristic<S> for Clustered<H> {
         self.heuristic.split(node)
     }
 
-    fn proposal(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
-        self.heuristic.proposal(node)
+    fn proposal(&self, node: &BuildNode<'_, S>, own: Own) -> Proposal<S> {
+        self.heuristic.proposal(node, own)
     }
 
     fn cluster_size(&self) -> usize {

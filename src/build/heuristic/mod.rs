@@ -28,7 +28,7 @@ pub use median::Median;
 pub use midpoint::Midpoint;
 pub use morton::Morton;
 pub(super) use morton::codes;
-pub use proposal::Proposal;
+pub(crate) use proposal::{Own, Proposal};
 pub use sah::SahCost;
 pub use spatial_sah::SpatialSah;
 pub use sweep_sah::SweepSah;
@@ -76,9 +76,9 @@ pub trait Heuristic<S: Scalar>: Sync {
     /// Proposes how to split `node`, which has at least two references.
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S>;
 
-    /// The same, with what this crate's own heuristics know beside, which is believed: not to be forged.
+    /// The same, with what this crate's own heuristics know beside.
     #[doc(hidden)]
-    fn proposal(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
+    fn proposal(&self, node: &BuildNode<'_, S>, _: Own) -> Proposal<S> {
         self.split(node).into()
     }
 
@@ -111,8 +111,8 @@ impl<S: Scalar, H: Heuristic<S> + ?Sized> Heuristic<S> for &H {
         (**self).split(node)
     }
 
-    fn proposal(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
-        (**self).proposal(node)
+    fn proposal(&self, node: &BuildNode<'_, S>, own: Own) -> Proposal<S> {
+        (**self).proposal(node, own)
     }
 
     fn codes(&self, references: &[PrimRef<S>], scene: &Aabb<S>) -> Option<Vec<u64>> {

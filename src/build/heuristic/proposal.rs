@@ -18,6 +18,15 @@ impl<S> From<Split<S>> for Proposal<S> {
     }
 }
 
+/// Asked for by this crate alone, since what is answered is believed.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct Own(());
+
+impl Own {
+    pub(in crate::build) const BUILD: Self = Self(());
+}
+
 /// The sides of a plane between two bins: what was counted before it and behind it.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::build) struct Sides<S> {

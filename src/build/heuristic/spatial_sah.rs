@@ -1,6 +1,6 @@
 //! The surface area heuristic with splits in space.
 
-use super::{BinnedSah, BuildNode, Heuristic, Proposal, SahCost, Split};
+use super::{BinnedSah, BuildNode, Heuristic, Own, Proposal, SahCost, Split};
 use crate::build::cut::halves;
 use crate::geometry::{Aabb, Axis, Scalar};
 
@@ -41,10 +41,10 @@ const SLICES: usize = 16;
 
 impl<S: Scalar> Heuristic<S> for SpatialSah {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
-        self.proposal(node).split
+        self.proposal(node, Own::BUILD).split
     }
 
-    fn proposal(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
+    fn proposal(&self, node: &BuildNode<'_, S>, _: Own) -> Proposal<S> {
         if SahCost::is_block(node) {
             return Split::Leaf.into();
         }

@@ -7,17 +7,16 @@ use crate::{
     Triangle, Watertight, WideTree,
 };
 use alloc::vec::Vec;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
 
 /// A triangle that lies in its box with all of its area, whatever the mode adds to it.
 type Plain = Fast<Triangle>;
 
 /// Numbers in [0, 1), the same each time.
 fn random() -> impl FnMut() -> f32 {
-    let mut state = 1u64;
-    move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 40) as f32 / (1u32 << 24) as f32
-    }
+    let mut rng = Pcg64Mcg::seed_from_u64(3);
+    move || rng.random()
 }
 
 /// In the unit cube, a tenth of them large.
