@@ -159,12 +159,15 @@ fn later_builds_take_the_memory_of_earlier_ones() {
             let (bvh, peak) = memory::peak(|| builder.clone().build_in(&mut workspace, input).unwrap());
             let bytes = bvh.report().memory_bytes;
             bvh.recycle(&mut workspace);
-            (peak as f64, bytes)
+            (peak as f64, bytes, workspace.bytes())
         };
-        let (first, _) = peak(90_000);
+        let (first, ..) = peak(90_000);
+        let mut kept = 0;
         // Small ones do not lose what they cannot use; what grows a little does not need new memory each time.
         for count in [90_000, 100, 0, 90_000, 91_000, 92_000, 93_000] {
-            let (peak, bytes) = peak(count);
+            let (peak, bytes, now) = peak(count);
+            assert!(count < 92_000 || now == kept, "{quality:?}, {count}: other memory");
+            kept = now;
             assert!(count == 91_000 || peak < 0.35 * first, "{quality:?}, {count}: {peak}, at first {first}");
             assert!(bytes < 100 * count + 2_000, "{quality:?}, {count}: {bytes} bytes");
         }

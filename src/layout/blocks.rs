@@ -206,10 +206,8 @@ mod tests {
     fn parts_are_written_and_the_rest_is_clear() {
         // What the allocator has at hand for the same size is not clear.
         drop(core::hint::black_box(alloc::vec![Word(u64::MAX); 384 / 8 + WORDS - 1]));
-        let blocks = Blocks::filled(
-            &mut Blocks::default(),
-            &[0..100, 128..300, 320..320, 320..323],
-            |number, part| {
+        let blocks =
+            Blocks::filled(&mut Vec::new(), &[0..100, 128..300, 320..320, 320..323], |number, part| {
                 if number == 2 {
                     return;
                 }
@@ -217,8 +215,7 @@ mod tests {
                 let places: &mut [u8] = unsafe { part.get_mut(number, 1) };
                 assert_eq!(places, [0]);
                 places[0] = number as u8 + 1;
-            },
-        );
+            });
         let bytes: Vec<u8> = blocks.words().iter().flat_map(|word| word.0.to_ne_bytes()).collect();
         assert!(blocks.words().as_ptr().addr().is_multiple_of(LINE));
         let mut expected = alloc::vec![0; 384];
