@@ -98,7 +98,8 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
         }
         let keys = &curve.keys[task];
         let sorted = order.sorted(keys);
-        let (mut found, mut open) = (Vec::new(), vec![0..keys.len()]);
+        let all = 0..keys.len();
+        let (mut found, mut open) = (Vec::new(), vec![all]);
         while let Some(range) = open.pop() {
             let row = &sorted[range.clone()];
             match if row.len() <= size { cluster(row) } else { None } {
