@@ -22,7 +22,7 @@ use core::fmt;
 /// use bvhkit::{Bvh, Quality, Ray, Sphere, Workspace};
 ///
 /// let mut workspace = Workspace::new();
-/// let mut spheres: Vec<Sphere> = (0..1000).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)).collect();
+/// let mut spheres: Vec<Sphere> = (0..1000).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.35)).collect();
 /// for frame in 0..3 {
 ///     let bvh = Bvh::builder().quality(Quality::Fast).build_in(&mut workspace, spheres)?;
 ///     let up = Ray::new([7.0, -1.0, 0.0], [0.0, 1.0, 0.0]);
