@@ -59,23 +59,7 @@ pub(crate) fn collect<T, R>(items: &[T], collected: &mut Vec<R>, f: impl Fn(usiz
     collected.extend(items.iter().enumerate().map(|(index, item)| f(index, item)));
 }
 
-/// Changes each item, by its number.
-#[cfg(feature = "rayon")]
-pub(crate) fn for_each<T: Send>(items: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
-    use rayon::prelude::*;
-    if items.len() < FEW {
-        return items.iter_mut().enumerate().for_each(|(index, item)| f(index, item));
-    }
-    items.par_iter_mut().enumerate().with_min_len(FEW).for_each(|(index, item)| f(index, item));
-}
-
-/// Changes each item, by its number.
-#[cfg(not(feature = "rayon"))]
-pub(crate) fn for_each<T>(items: &mut [T], f: impl Fn(usize, &mut T)) {
-    items.iter_mut().enumerate().for_each(|(index, item)| f(index, item));
-}
-
-/// The items of all parts, one after another, in memory for as many.
+/// The items of all parts, one after another, in empty memory for as many.
 ///
 /// # Panics
 /// If a part has fewer items than it says, or `memory` is not for as many as asked for.
@@ -85,7 +69,6 @@ pub(crate) fn concat<T: Send, I: ExactSizeIterator<Item = T> + Send>(
 ) -> Vec<T> {
     let all_len = parts.iter().map(ExactSizeIterator::len).sum();
     let mut all = memory(all_len);
-    all.clear();
     let mut rest: &mut [MaybeUninit<T>] = &mut all.spare_capacity_mut()[..all_len];
     // Parts may be of one item: several are written at a time.
     let mut jobs: Vec<(&mut [MaybeUninit<T>], Vec<I>)> = Vec::new();

@@ -5,11 +5,11 @@ use crate::tree::{Node, Run, Tree};
 use alloc::vec::Vec;
 use core::mem::take;
 
-/// The large buffers of a build. Small ones, of which there are many, come from the allocator every time.
+/// The large buffers of a build; what is left in them is of no use. Small ones, of which there are many, come from the allocator every time.
 pub(crate) struct Buffers<S> {
     /// What the tree is to be built of: the input of a build.
     pub references: Vec<PrimRef<S>>,
-    /// Codes, which become sorted keys. What is left in them is of no use.
+    /// Codes, which become sorted keys.
     pub(super) keys: Vec<u64>,
     /// Where keys are sorted to.
     pub(super) spare_keys: Vec<u64>,
@@ -60,7 +60,10 @@ pub(crate) fn fitting<T>(kept: &mut Vec<T>, len: usize) -> Vec<T> {
     match kept.capacity() {
         0 => Vec::with_capacity(len),
         capacity if capacity > 2 * len => Vec::with_capacity(len),
-        capacity if capacity >= len => take(kept),
+        capacity if capacity >= len => {
+            kept.clear();
+            take(kept)
+        }
         _ => {
             drop(take(kept));
             Vec::with_capacity(len + len / 8)
@@ -68,10 +71,9 @@ pub(crate) fn fitting<T>(kept: &mut Vec<T>, len: usize) -> Vec<T> {
     }
 }
 
-/// Keeps the larger of two buffers, empty.
-fn keep_larger<T>(kept: &mut Vec<T>, other: Vec<T>) {
+/// Keeps the larger of two buffers, whatever is in them.
+pub(crate) fn keep_larger<T>(kept: &mut Vec<T>, other: Vec<T>) {
     if other.capacity() > kept.capacity() {
         *kept = other;
     }
-    kept.clear();
 }

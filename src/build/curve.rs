@@ -27,8 +27,11 @@ impl Curve {
         let code_bits = u64::BITS - codes.iter().fold(0, |all, code| all | code).leading_zeros();
         let lost = (code_bits + place_bits).saturating_sub(bits as u32);
         let mut keys = codes;
-        parallel::for_each(&mut keys, |place, code| {
-            *code = (*code >> lost).unbounded_shl(place_bits) | place as u64;
+        let parts = keys.chunks_mut(TASK_SIZE).zip((0..).step_by(TASK_SIZE));
+        parallel::map(parts.collect(), |(codes, first)| {
+            for (code, place) in codes.iter_mut().zip(first..) {
+                *code = (*code >> lost).unbounded_shl(place_bits) | place;
+            }
         });
         sort(&mut keys, &mut buffers.spare_keys, place_bits, place_bits + code_bits - lost);
         if !buffers.are_kept {

@@ -58,7 +58,6 @@ impl Blocks {
         }
         let len = lines * WORDS + WORDS - 1;
         let mut words = fitting(memory, len);
-        words.clear();
         let address = words.as_ptr().addr();
         let first = (address.next_multiple_of(LINE) - address) / size_of::<Word>();
         let (before, rest) = words.spare_capacity_mut()[..len].split_at_mut(first);

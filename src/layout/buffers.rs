@@ -1,6 +1,7 @@
 //! Memory that one layout leaves to the next.
 
 use super::blocks::Word;
+use crate::build::keep_larger;
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::any::Any;
@@ -23,9 +24,7 @@ impl Buffers {
 
     /// Takes over the memory of blocks, if it is more.
     pub(super) fn keep_words(&mut self, words: Vec<Word>) {
-        if words.capacity() > self.words.capacity() {
-            self.words = words;
-        }
+        keep_larger(&mut self.words, words);
     }
 
     /// Memory for weights, empty.
