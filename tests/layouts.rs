@@ -198,7 +198,7 @@ fn lists_of_rays<M: Mode>() {
         let soup = soups::soup::<M::Number>(kind, 300, &mut rng);
         let triangles: Vec<_> = soup.iter().copied().map(M::of).collect();
         let mut rays = vec![Ray::new(soup[0].a, [M::Number::ZERO; 3])];
-        for _ in 0..320 {
+        while rays.len() < 3000 {
             let ray = soups::ray(&soup, &mut rng);
             rays.extend(variants(ray, &mut rng));
         }
