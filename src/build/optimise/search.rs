@@ -13,10 +13,10 @@ pub(super) struct Move<S> {
     pub gain: S,
 }
 
-/// How many places a search looks at, at the most: rays take as many steps as without a bound on five scenes, with half as many
-/// places within 0.5 %. Where everything overlaps, no place would be left out, and a round took as long as the square of
-/// the nodes.
-const MOST_PLACES: usize = 128;
+/// How many places a search looks at, at the most. In good trees it looks at 10 to 40, and the sum of areas is within the luck of
+/// 0.4 % of what it is without a bound. Where everything overlaps, no place would be left out, and a round took as long as the
+/// square of the nodes; there the sum is by 1.6 % larger than with twice as many, in little more than half of the time.
+const MOST_PLACES: usize = 48;
 
 /// The best place for a node, if there is a better one than its own.
 ///
