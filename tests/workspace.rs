@@ -5,6 +5,7 @@ mod memory;
 mod common {
     pub mod heuristics;
     pub mod hostile;
+    pub mod scattered;
 }
 
 use bvhkit::heuristic::Heuristic;
@@ -12,21 +13,12 @@ use bvhkit::{
     BuildError, Builder, Bvh, CompactTree, Fast, Layout, OnInvalid, Pace, Quality, Scalar, Tree, Triangle,
     WideTree, Workspace,
 };
-use common::heuristics;
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64Mcg;
+use common::{heuristics, scattered};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 fn triangles<S: Scalar>(n: usize) -> Vec<Fast<Triangle<S>>> {
-    let mut rng = Pcg64Mcg::seed_from_u64(n as u64);
-    let mut point = |size: f64| [0.0; 3].map(|_: f64| rng.random_range(-size..size));
-    let add = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| S::from_f64(a[k] + b[k]));
-    let mut triangle = |_| {
-        let (center, b, c) = (point(100.0), point(2.0), point(2.0));
-        Fast(Triangle::new(add(center, [0.0; 3]), add(center, b), add(center, c)))
-    };
-    (0..n).map(&mut triangle).collect()
+    scattered::triangles(n).into_iter().map(Fast).collect()
 }
 
 /// Tests take turns: one of them counts what all threads allocate.

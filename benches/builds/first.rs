@@ -4,10 +4,11 @@ use crate::check::Scene;
 use crate::columns::{self, decimal};
 use crate::methods::{Built, Item, Method};
 use crate::scenes::soup;
-use crate::timing::median;
+use crate::timing::interleaved;
 use crate::{Extent, Pools};
 use bvhkit::{Fast, Workspace};
-use std::time::{Duration, Instant};
+use std::cell::Cell;
+use std::time::Duration;
 
 const HEADER: [&str; 5] =
     ["triangles", "preset", "first build, ns per triangle", "later ones", "later ones in a workspace"];
@@ -38,24 +39,27 @@ pub fn print(extent: &Extent, pools: &Pools, methods: &[Method]) {
 
 /// The first build's, later ones', and those in a workspace.
 fn times(method: &Method, items: &[Item], repetitions: usize, pools: &Pools) -> [Duration; 3] {
-    let timed = |build: &mut (dyn FnMut(Vec<Item>) -> Box<dyn Built> + Send), items: Vec<Item>| {
-        pools[0].install(|| {
-            let start = Instant::now();
-            let built = build(items);
-            (start.elapsed(), built)
-        })
-    };
-    let mut in_new = |triangles| method.build(triangles);
-    let first = timed(&mut in_new, items.to_vec()).0;
-    let mut workspace = Workspace::new();
-    method.build_in(&mut workspace, items.to_vec()).recycle(&mut workspace);
-    let (mut new, mut old) = (Vec::new(), Vec::new());
-    for _ in 0..repetitions {
-        new.push(timed(&mut in_new, items.to_vec()).0);
-        let mut in_old = |triangles| method.build_in(&mut workspace, triangles);
-        let (time, built) = timed(&mut in_old, items.to_vec());
-        old.push(time);
-        built.recycle(&mut workspace);
-    }
-    [first, median(new), median(old)]
+    pools[0].install(|| {
+        // What is to be built of, what was built last, and what that leaves to the next.
+        let triangles = Cell::new(Vec::new());
+        let last = Cell::new(None::<Box<dyn Built>>);
+        let workspace = Cell::new(Workspace::new());
+        let prepare = |_| {
+            if let Some(built) = last.take() {
+                let mut memory = workspace.take();
+                built.recycle(&mut memory);
+                workspace.set(memory);
+            }
+            triangles.set(items.to_vec());
+        };
+        let in_new = || last.set(Some(method.build(triangles.take())));
+        let in_old = || {
+            let mut memory = workspace.take();
+            last.set(Some(method.build_in(&mut memory, triangles.take())));
+            workspace.set(memory);
+        };
+        let first = interleaved(1, 1, prepare, |_| in_new());
+        let later = interleaved(2, repetitions, prepare, |way| if way == 0 { in_new() } else { in_old() });
+        [first[0], later[0], later[1]]
+    })
 }

@@ -5,7 +5,8 @@ use crate::tree::{Node, Run, Tree};
 use alloc::vec::Vec;
 use core::mem::take;
 
-/// The large buffers of a build; what is left in them is of no use. Small ones, of which there are many, come from the allocator every time.
+/// The large buffers of a build; what is left in them is of no use. Small ones, of which there are many, come from the allocator
+/// every time.
 pub(crate) struct Buffers<S> {
     /// What the tree is to be built of: the input of a build.
     pub references: Vec<PrimRef<S>>,

@@ -76,79 +76,28 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
     let (_, tasks) = curve.divide::<S>();
     let order = Order { references, curve: &curve, max_leaf_size: rules.max_leaf_size };
     let scale = scene.area_scale();
-    let cutter = Cutter::new(rules.max_runs, rules.block_size, scale);
-    let area = |aabb: &Aabb<S>| aabb.scaled_half_area(scale).to_f64();
-    let share = area(scene) / references.len() as f64;
-    // Its box, if it is to be a cluster.
-    let cluster = |row: &[PrimRef<S>]| {
-        let (count, aabb) = (row.len() as f64, bounds(row));
-        if count < 2.0 || area(&aabb) <= LARGEST * share * count {
-            return Some(aabb);
-        }
-        let areas = row.iter().map(|reference| area(&reference.aabb));
-        let (sum, squares) =
-            areas.fold((0.0, 0.0), |(sum, squares), area| (sum + area, squares + area * area));
-        (sum * sum >= EVEN * count * squares).then_some(aabb)
-    };
+    let share = scene.scaled_half_area(scale).to_f64() / references.len() as f64;
+    let finder = Finder { size, scale, share };
+    let cutter = is_cut.then(|| Cutter::new(rules.max_runs, rules.block_size, scale));
     let tasks = parallel::map(tasks, |task: Range<usize>| {
-        let mut built = Subtree::with_capacity(if is_cut { 0 } else { task.len() / 4 }, task.len());
-        let mut clusters = Vec::new();
         if watch.ask() == Pace::Stop {
-            return (built, clusters);
+            return Built::with_capacity(0, 0);
         }
         let keys = &curve.keys[task];
         let sorted = order.sorted(keys);
-        let all = 0..keys.len();
-        let (mut found, mut open) = (Vec::new(), vec![all]);
-        while let Some(range) = open.pop() {
-            let row = &sorted[range.clone()];
-            match if row.len() <= size { cluster(row) } else { None } {
-                Some(aabb) => found.push((range, aabb)),
-                None => {
-                    let border = range.start + border(&keys[range.clone()]);
-                    open.extend([border..range.end, range.start..border]);
-                }
-            }
+        let found = finder.find(keys, &sorted);
+        match &cutter {
+            Some(cutter) => cut(cutter, &sorted, &found),
+            None => grow(&order, keys, &found),
         }
-        let (mut last, mut parts) = ([Vec::new(), Vec::new()], Vec::with_capacity(MAX_DEPTH + 1));
-        for pair in found.chunks(2) {
-            if is_cut {
-                // What fits a leaf is one.
-                let rows = [pair.first(), pair.get(1)].map(|row| match row {
-                    Some((range, aabb)) if range.len() > LEAF_WIDTH => (&sorted[range.clone()], aabb),
-                    _ => (&[][..], scene),
-                });
-                cutter.cut(rows, &mut last);
-            }
-            for ((range, aabb), last) in pair.iter().zip(&last) {
-                let (keys, row) = (&keys[range.clone()], &sorted[range.clone()]);
-                let begin = [built.nodes.len(), built.indices.len(), built.runs.len()];
-                let root = if is_cut {
-                    Cutter::append(row, last, &mut built.runs);
-                    built.indices.extend(row.iter().map(|reference| reference.index));
-                    Root { child: Child::leaf(0..row.len()), aabb: *aabb, height: 0 }
-                } else {
-                    let root = order.build(keys, &mut built, &mut parts);
-                    if root.height > DEPTH {
-                        built.nodes.truncate(begin[0]);
-                        built.indices.truncate(begin[1]);
-                        order.build(&curve.in_a_row(keys), &mut built, &mut parts)
-                    } else {
-                        root
-                    }
-                };
-                clusters.push((begin, [built.nodes.len(), built.indices.len(), built.runs.len()], root));
-            }
-        }
-        (built, clusters)
     });
-    let clusters = tasks.iter().flat_map(|(built, clusters)| {
+    let clusters = tasks.iter().flat_map(|Built { subtree, clusters }| {
         clusters.iter().map(|(begin, end, root)| {
             let piece = Piece {
-                nodes: &built.nodes[begin[0]..end[0]],
+                nodes: &subtree.nodes[begin.nodes..end.nodes],
                 root: root.child,
-                indices: &built.indices[begin[1]..end[1]],
-                runs: &built.runs[begin[2]..end[2]],
+                indices: &subtree.indices[begin.indices..end.indices],
+                runs: &subtree.runs[begin.runs..end.runs],
             };
             (piece, root.aabb)
         })
@@ -175,4 +124,112 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
     let joined = join(top, &subtrees, buffers);
     buffers.keys = curve.keys;
     joined
+}
+
+/// Finds clusters among neighbours.
+struct Finder<S> {
+    /// The most primitives in one.
+    size: usize,
+    /// As for [`Aabb::scaled_half_area`].
+    scale: S,
+    /// A primitive's of the scene's area, if all had the same.
+    share: f64,
+}
+
+impl<S: Scalar> Finder<S> {
+    /// The clusters of sorted keys and their references, in order, and their boxes.
+    fn find(&self, keys: &[u64], sorted: &[PrimRef<S>]) -> Vec<(Range<usize>, Aabb<S>)> {
+        let all = 0..keys.len();
+        let (mut found, mut open) = (Vec::new(), vec![all]);
+        while let Some(range) = open.pop() {
+            match self.cluster(&sorted[range.clone()]) {
+                Some(aabb) => found.push((range, aabb)),
+                None => {
+                    let border = range.start + border(&keys[range.clone()]);
+                    open.extend([border..range.end, range.start..border]);
+                }
+            }
+        }
+        found
+    }
+
+    /// The box of a row, if it is to be a cluster.
+    fn cluster(&self, row: &[PrimRef<S>]) -> Option<Aabb<S>> {
+        if row.len() > self.size {
+            return None;
+        }
+        let area = |aabb: &Aabb<S>| aabb.scaled_half_area(self.scale).to_f64();
+        let (count, aabb) = (row.len() as f64, bounds(row));
+        if count < 2.0 || area(&aabb) <= LARGEST * self.share * count {
+            return Some(aabb);
+        }
+        let areas = row.iter().map(|reference| area(&reference.aabb));
+        let (sum, squares) =
+            areas.fold((0.0, 0.0), |(sum, squares), area| (sum + area, squares + area * area));
+        (sum * sum >= EVEN * count * squares).then_some(aabb)
+    }
+}
+
+/// The clusters of a task, one after another, with their first and last places and their roots, whose numbers are counted from the
+/// first.
+struct Built<S> {
+    subtree: Subtree<S>,
+    clusters: Vec<(Place, Place, Root<S>)>,
+}
+
+/// Among nodes, indices and runs.
+struct Place {
+    nodes: usize,
+    indices: usize,
+    runs: usize,
+}
+
+impl<S: Scalar> Built<S> {
+    fn with_capacity(nodes: usize, indices: usize) -> Self {
+        Self { subtree: Subtree::with_capacity(nodes, indices), clusters: Vec::new() }
+    }
+
+    fn end(&self) -> Place {
+        let Subtree { nodes, indices, runs, .. } = &self.subtree;
+        Place { nodes: nodes.len(), indices: indices.len(), runs: runs.len() }
+    }
+}
+
+/// A row of leaves of each cluster.
+fn cut<S: Scalar>(cutter: &Cutter<S>, sorted: &[PrimRef<S>], found: &[(Range<usize>, Aabb<S>)]) -> Built<S> {
+    let mut built = Built::with_capacity(0, sorted.len());
+    let mut last = [Vec::new(), Vec::new()];
+    for pair in found.chunks(2) {
+        // What fits a leaf is one.
+        let rows = [pair.first(), pair.get(1)].map(|row| match row {
+            Some((range, aabb)) if range.len() > LEAF_WIDTH => (&sorted[range.clone()], aabb),
+            _ => (&[][..], &pair[0].1),
+        });
+        cutter.cut(rows, &mut last);
+        for ((range, aabb), last) in pair.iter().zip(&last) {
+            let (begin, row) = (built.end(), &sorted[range.clone()]);
+            Cutter::append(row, last, &mut built.subtree.runs);
+            built.subtree.indices.extend(row.iter().map(|reference| reference.index));
+            let root = Root { child: Child::leaf(0..row.len()), aabb: *aabb, height: 0 };
+            built.clusters.push((begin, built.end(), root));
+        }
+    }
+    built
+}
+
+/// A tree over each cluster.
+fn grow<S: Scalar>(order: &Order<'_, S>, keys: &[u64], found: &[(Range<usize>, Aabb<S>)]) -> Built<S> {
+    let mut built = Built::with_capacity(keys.len() / 4, keys.len());
+    let mut parts = Vec::with_capacity(MAX_DEPTH + 1);
+    for (range, _) in found {
+        let (begin, keys) = (built.end(), &keys[range.clone()]);
+        let mut root = order.build(keys, &mut built.subtree, &mut parts);
+        if root.height > DEPTH {
+            built.subtree.nodes.truncate(begin.nodes);
+            built.subtree.indices.truncate(begin.indices);
+            root = order.build(&order.curve.in_a_row(keys), &mut built.subtree, &mut parts);
+        }
+        built.clusters.push((begin, built.end(), root));
+    }
+    built
 }
