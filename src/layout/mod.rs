@@ -13,6 +13,8 @@ mod wide;
 pub(crate) use buffers::Buffers;
 pub(crate) use collapse::Contents;
 pub(crate) use form::{Form, Node as WideNode};
+#[cfg(test)]
+pub(crate) use packed::Packed;
 pub use wide::{CompactTree, WideTree};
 pub(crate) use wide::{MAX_PENDING, Reference};
 

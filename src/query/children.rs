@@ -5,41 +5,93 @@ use crate::geometry::Scalar;
 use crate::layout::{Reference, WideNode};
 use crate::simd::Lanes;
 
+/// So many are sorted, or written, without a branch: most nodes have no more that are met.
+const FEW: usize = 4;
+
 /// The nearest of two children or more, which are entered at `near` in the lanes `met`; the others are pushed, the
 /// farthest first.
 ///
 /// In registers where the lanes can sort, which the entry distances of a ray that looks behind its origin do not suit; else
-/// one by one.
+/// a few as integers, and more one by one.
 #[inline(always)]
 pub(super) fn nearest<S: Scalar, L: Lanes<S>, const N: usize>(
     node: &impl WideNode<S, N>,
     near: L,
-    mut met: u32,
+    met: u32,
     t_min: S,
     pending: &mut Pending<'_, S>,
 ) -> Reference {
+    let count = met.count_ones() as usize;
     if t_min >= S::ZERO {
         let (references, entries) = pending.windows();
         let references = Reference::window(references);
         if let Some(lane) = near.sort(met, Reference::bits(node.children()), references, entries) {
-            pending.grow(met.count_ones() as usize - 1);
+            pending.grow(count - 1);
             return node.children()[lane as usize % N];
         }
     }
     let mut distances = Distances([S::ZERO; 16]);
     near.store(&mut distances.0);
-    let distance = |lane: usize| distances.0[lane % 16];
+    if count <= FEW {
+        nearest_of_few(node, &distances, met, pending)
+    } else {
+        nearest_of_many(node, &distances, met, pending)
+    }
+}
+
+/// By a sorting network: one branch after another on which is nearer would be mispredicted half of the time (with AVX2 closest
+/// hits 1 to 7 % quicker).
+#[inline(always)]
+fn nearest_of_few<S: Scalar, const N: usize>(
+    node: &impl WideNode<S, N>,
+    distances: &Distances<S>,
+    mut met: u32,
+    pending: &mut Pending<'_, S>,
+) -> Reference {
+    let count = met.count_ones() as usize;
+    // A distance but for its last bits, which are its lane. Behind those that there are, zeros.
+    let mut key = || {
+        let lane = lowest(met);
+        let key = distances.of(lane).to_ordered_bits() & !15 | lane as u64;
+        let key = if met == 0 { 0 } else { key };
+        met &= met.wrapping_sub(1);
+        key
+    };
+    let order = |one: u64, other: u64| (one.max(other), one.min(other));
+    let [a, b, c, d] = [key(), key(), key(), key()];
+    let ((a, b), (c, d)) = (order(a, b), order(c, d));
+    let ((a, c), (b, d)) = (order(a, c), order(b, d));
+    let (b, c) = order(b, c);
+    let (references, entries) = pending.windows();
+    for (place, key) in [a, b, c].into_iter().enumerate() {
+        let lane = (key & 15) as usize;
+        references[place].write(node.children()[lane % N]);
+        entries[place].write(distances.of(lane));
+    }
+    pending.grow(count - 1);
+    let of_three_or_four = if count == 3 { c } else { d };
+    let nearest = if count == 2 { b } else { of_three_or_four };
+    node.children()[(nearest & 15) as usize % N]
+}
+
+#[inline(always)]
+fn nearest_of_many<S: Scalar, const N: usize>(
+    node: &impl WideNode<S, N>,
+    distances: &Distances<S>,
+    mut met: u32,
+    pending: &mut Pending<'_, S>,
+) -> Reference {
     let [first, second] = [next_lane(&mut met), next_lane(&mut met)];
     let (mut nearest, farthest) =
-        if distance(second) < distance(first) { (second, first) } else { (first, second) };
+        if distances.of(second) < distances.of(first) { (second, first) } else { (first, second) };
     let base = pending.len();
-    pending.push(node.children()[farthest % N], distance(farthest));
+    pending.push(node.children()[farthest % N], distances.of(farthest));
     while met != 0 {
         let mut lane = next_lane(&mut met);
-        if distance(lane) < distance(nearest) {
+        if distances.of(lane) < distances.of(nearest) {
             core::mem::swap(&mut lane, &mut nearest);
         }
-        pending.push(node.children()[lane % N], distance(lane));
+        pending.push(node.children()[lane % N], distances.of(lane));
         pending.sink(base);
     }
     node.children()[nearest % N]
@@ -55,15 +107,28 @@ pub(super) fn last<S: Scalar, L: Lanes<S>, const N: usize>(
 ) -> Reference {
     let last = met.ilog2();
     met ^= 1 << last;
+    let count = met.count_ones() as usize;
     let (references, _) = pending.windows();
     if L::compress(isa, met, Reference::bits(node.children()), Reference::window(references)) {
-        pending.grow(met.count_ones() as usize);
+        pending.grow(count);
+    } else if count <= FEW {
+        for reference in &mut references[..FEW] {
+            reference.write(node.children()[lowest(met) % N]);
+            met &= met.wrapping_sub(1);
+        }
+        pending.grow(count);
     } else {
         while met != 0 {
             pending.push(node.children()[next_lane(&mut met) % N], S::ZERO);
         }
     }
     node.children()[last as usize % N]
+}
+
+/// The lowest lane of some; one of them if there is none.
+#[inline(always)]
+fn lowest(met: u32) -> usize {
+    met.trailing_zeros() as usize % 16
 }
 
 #[inline(always)]
@@ -76,3 +141,58 @@ pub(super) fn next_lane(met: &mut u32) -> usize {
 /// Stored a line at a time: across two lines it takes a fifth more.
 #[repr(align(64))]
 pub(super) struct Distances<S>(pub [S; 16]);
+
+impl<S: Copy> Distances<S> {
+    #[inline(always)]
+    fn of(&self, lane: usize) -> S {
+        self.0[lane % 16]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Aabb;
+    use crate::layout::{Form, Packed};
+    use crate::query::pending::Memory;
+    use alloc::vec;
+
+    type Node = <Packed as Form<f32, 16>>::Node;
+
+    /// Distances with ties and zeros, all sets of children of two and more, below what was there before.
+    #[test]
+    fn children_are_pushed_farthest_first_and_none_is_lost() {
+        let distances = Distances(core::array::from_fn(|lane| ((lane * 7 + 3) % 11) as f32 * 0.75));
+        let child = |lane: usize| Reference::node(64 * (lane + 1));
+        let boxes: [_; 16] = core::array::from_fn(|lane| (Aabb::new([0.0; 3], [1.0; 3]), child(lane)));
+        let node = Node::new(&boxes);
+        let lane_of = |place: Reference| (0..16).find(|&lane| child(lane) == place).unwrap();
+        for met in (3..=u32::from(u16::MAX)).filter(|met| met.count_ones() > 1) {
+            for is_few in [true, false] {
+                if is_few && met.count_ones() as usize > FEW {
+                    continue;
+                }
+                let mut memory = Memory::new();
+                let mut pending = Pending::new(&mut memory, 0);
+                pending.push(Reference::node(0), 9.0);
+                let of = if is_few { nearest_of_few } else { nearest_of_many };
+                let mut lanes = vec![lane_of(of(&node, &distances, met, &mut pending))];
+                while pending.len() > 1 {
+                    // An entry is the child's own.
+                    let before = pending.len();
+                    let lane = lane_of(pending.pop().unwrap());
+                    pending.grow(1);
+                    assert_eq!(pending.pop_before(distances.of(lane)), Some(child(lane)), "{met:b}");
+                    assert_eq!(pending.len(), before - 1);
+                    lanes.push(lane);
+                }
+                assert!(
+                    lanes.is_sorted_by(|&a, &b| distances.of(a) <= distances.of(b)),
+                    "{met:b}: {lanes:?}"
+                );
+                assert_eq!(lanes.iter().fold(0, |set, lane| set | 1 << lane), met);
+                assert_eq!(lanes.len(), met.count_ones() as usize);
+            }
+        }
+    }
+}
