@@ -9,7 +9,7 @@ use crate::simd::Lanes;
 const FEW: usize = 4;
 
 /// The nearest of two children or more, which are entered at `near` in the lanes `met`; the others are pushed, the
-/// farthest first.
+/// farthest first. Distances within 16 ulps of one another may change places.
 ///
 /// In registers where the lanes can sort, which the entry distances of a ray that looks behind its origin do not suit; else
 /// a few as integers, and more one by one.

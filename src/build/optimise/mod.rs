@@ -26,14 +26,15 @@ use search::Move;
 /// [`MAX_DEPTH`](crate::MAX_DEPTH).
 ///
 /// A node without a better place is left alone in the next round, in the next two the time after, then in three each
-/// time: most have none, and looking for one is what takes the time.
+/// time, or until a round moves nothing: most have none, and looking for one is what takes the time.
 ///
 /// The default, a hundredth of the nodes in 8 rounds, gets most of what there is: see the README's table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Optimise {
     /// Which part of all nodes may be taken out, from 0 to 1: the largest.
     pub share: f64,
-    /// How many rounds there are at the most; they end where nothing is gained any more.
+    /// How many rounds there are at the most; they end where nothing is moved any more. A few nodes may go to and fro for
+    /// ever, since moves of one round are sought without those of the others: some dozens of rounds get all that there is.
     pub rounds: usize,
 }
 
@@ -68,6 +69,9 @@ impl Optimise {
         let mut candidates = largest(&linked, count);
         let mut moves = 0;
         for _ in 0..self.rounds {
+            if !goes_on() {
+                break;
+            }
             let all_are_asked = candidates.iter().all(|candidate| candidate.rest == 0);
             let done = round(&mut linked, &mut candidates, &goes_on);
             moves += done;
