@@ -212,6 +212,22 @@ fn lists_of_rays<M: Mode>() {
     }
 }
 
+/// Longer than it takes for the quicker way to be asked for a third time.
+#[test]
+fn a_long_list_of_rays() {
+    let mut rng = Pcg64Mcg::seed_from_u64(11);
+    let soup = soups::soup::<f32>(0, 100, &mut rng);
+    let rays: Vec<_> = (0..60_000).map(|_| soups::ray(&soup, &mut rng)).collect();
+    let bvh = Bvh::build(&soup).unwrap();
+    let (mut closest, mut any) = (vec![None; rays.len()], vec![false; rays.len()]);
+    bvh.closest_hits(&rays, &mut closest);
+    bvh.any_hits(&rays, &mut any);
+    for (ray, (closest, any)) in rays.iter().zip(closest.into_iter().zip(any)) {
+        let expected = bvh.closest_hit(ray).map(key);
+        assert_eq!((closest.map(key), any), (expected, expected.is_some()), "{ray:?}");
+    }
+}
+
 #[test]
 fn watertight_triangles() {
     all_answers::<Watertight<Triangle>>(in_every_layout);
