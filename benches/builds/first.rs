@@ -7,7 +7,7 @@ use crate::scenes::soup;
 use crate::timing::interleaved;
 use crate::{Extent, Pools};
 use bvhkit::{Fast, Workspace};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::time::Duration;
 
 const HEADER: [&str; 5] =
@@ -43,21 +43,15 @@ fn times(method: &Method, items: &[Item], repetitions: usize, pools: &Pools) -> 
         // What is to be built of, what was built last, and what that leaves to the next.
         let triangles = Cell::new(Vec::new());
         let last = Cell::new(None::<Box<dyn Built>>);
-        let workspace = Cell::new(Workspace::new());
+        let workspace = RefCell::new(Workspace::new());
         let prepare = |_| {
             if let Some(built) = last.take() {
-                let mut memory = workspace.take();
-                built.recycle(&mut memory);
-                workspace.set(memory);
+                built.recycle(&mut workspace.borrow_mut());
             }
             triangles.set(items.to_vec());
         };
         let in_new = || last.set(Some(method.build(triangles.take())));
-        let in_old = || {
-            let mut memory = workspace.take();
-            last.set(Some(method.build_in(&mut memory, triangles.take())));
-            workspace.set(memory);
-        };
+        let in_old = || last.set(Some(method.build_in(&mut workspace.borrow_mut(), triangles.take())));
         let first = interleaved(1, 1, prepare, |_| in_new());
         let later = interleaved(2, repetitions, prepare, |way| if way == 0 { in_new() } else { in_old() });
         [first[0], later[0], later[1]]

@@ -58,13 +58,10 @@ impl<S> Buffers<S> {
 /// An empty buffer for so many: the kept one, unless it is too small, or so large that what is made of it would take much more
 /// than it has to. In place of one that is too small, one that is larger by an eighth, for what goes on to grow.
 pub(crate) fn fitting<T>(kept: &mut Vec<T>, len: usize) -> Vec<T> {
+    kept.clear();
     match kept.capacity() {
-        0 => Vec::with_capacity(len),
-        capacity if capacity > 2 * len => Vec::with_capacity(len),
-        capacity if capacity >= len => {
-            kept.clear();
-            take(kept)
-        }
+        capacity if capacity == 0 || capacity > 2 * len => Vec::with_capacity(len),
+        capacity if capacity >= len => take(kept),
         _ => {
             drop(take(kept));
             Vec::with_capacity(len + len / 8)

@@ -63,8 +63,8 @@ pub(crate) fn ask_all<'a, P: Intersect, L: Traverse<P>, Q: Question<'a, P>>(
         ask(count, false);
         return;
     }
-    let [mut stretch, longest] = STRETCH;
-    let mut was_in_turns = None;
+    let [shortest, longest] = STRETCH;
+    let (mut stretch, mut was_in_turns) = (shortest, None);
     loop {
         let mut seconds = [0.0; 2];
         for in_turns in TRIALS {
@@ -73,7 +73,7 @@ pub(crate) fn ask_all<'a, P: Intersect, L: Traverse<P>, Q: Question<'a, P>>(
             seconds[usize::from(in_turns)] += clock.seconds();
         }
         let in_turns = seconds[1] < seconds[0];
-        stretch = if was_in_turns == Some(in_turns) { longest.min(2 * stretch) } else { STRETCH[0] };
+        stretch = if was_in_turns == Some(in_turns) { longest.min(2 * stretch) } else { shortest };
         was_in_turns = Some(in_turns);
         if ask(stretch, in_turns) == 0 {
             return;

@@ -51,11 +51,10 @@ fn nearest_of_few<S: Scalar, const N: usize>(
     let count = met.count_ones() as usize;
     // A distance but for its last bits, which are its lane. Behind those that there are, zeros.
     let mut key = || {
-        let lane = lowest(met);
+        let is_there = met != 0;
+        let lane = next_lane(&mut met) % 16;
         let key = distances.of(lane).to_ordered_bits() & !15 | lane as u64;
-        let key = if met == 0 { 0 } else { key };
-        met &= met.wrapping_sub(1);
-        key
+        if is_there { key } else { 0 }
     };
     let order = |one: u64, other: u64| (one.max(other), one.min(other));
     let [a, b, c, d] = [key(), key(), key(), key()];
@@ -113,8 +112,7 @@ pub(super) fn last<S: Scalar, L: Lanes<S>, const N: usize>(
         pending.grow(count);
     } else if count <= FEW {
         for reference in &mut references[..FEW] {
-            reference.write(node.children()[lowest(met) % N]);
-            met &= met.wrapping_sub(1);
+            reference.write(node.children()[next_lane(&mut met) % N]);
         }
         pending.grow(count);
     } else {
@@ -125,16 +123,11 @@ pub(super) fn last<S: Scalar, L: Lanes<S>, const N: usize>(
     node.children()[last as usize % N]
 }
 
-/// The lowest lane of some; one of them if there is none.
-#[inline(always)]
-fn lowest(met: u32) -> usize {
-    met.trailing_zeros() as usize % 16
-}
-
+/// Takes out the lowest lane; 32 if there is none.
 #[inline(always)]
 pub(super) fn next_lane(met: &mut u32) -> usize {
     let lane = met.trailing_zeros() as usize;
-    *met &= *met - 1;
+    *met &= met.wrapping_sub(1);
     lane
 }
 

@@ -114,7 +114,6 @@ fn round<S: Scalar>(
 }
 
 /// A node that may be taken out.
-#[derive(Clone)]
 struct Candidate {
     node: u32,
     /// Rounds that it is left alone for.
