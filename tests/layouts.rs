@@ -255,6 +255,24 @@ fn solids() {
     over_the_soups(boxes::<f64>, |soup, _, rng| soups::ray(soup, rng), in_wide_trees);
 }
 
+/// Rays that start on the faces, edges and corners of boxes, or of solids whose boxes have them, and go any way: where one leaves
+/// a box as it starts, t is a zero of either sign.
+#[test]
+fn rays_from_the_faces_of_boxes() {
+    let corner = |i: u8| [i % 4, i / 4 % 4, i / 16].map(f32::from);
+    let boxes: Vec<_> = (0..64).map(|i| Aabb::new(corner(i), corner(i).map(|x| x + 1.0))).collect();
+    let signs = |i: u8| [i % 3, i / 3 % 3, i / 9].map(|x| f32::from(x) - 1.0);
+    let directions = (0..27).map(signs).filter(|direction| *direction != [0.0; 3]);
+    let origins = (0..125).map(|i: u8| [i % 5, i / 5 % 5, i / 25].map(f32::from));
+    let rays: Vec<_> = origins
+        .flat_map(|origin| directions.clone().map(move |direction| Ray::new(origin, direction)))
+        .flat_map(|ray| [ray, ray.with_interval(0.0, 0.0), ray.with_interval(-0.0, -0.0)])
+        .collect();
+    let mut compared = Compared::by(in_every_layout);
+    compared.add(&boxes, &rays, 0);
+    compared.tell();
+}
+
 /// A primitive of one's own that keeps no rule but the pure function.
 #[test]
 fn sloppy_discs() {

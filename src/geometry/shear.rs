@@ -1,6 +1,7 @@
 //! The frame of a ray: what a point looks like from behind the ray.
 
 use super::{Scalar, Vector};
+use crate::simd::Lanes4;
 
 /// The frame in which a ray starts at the origin and runs along the third axis: a shift, a permutation
 /// of the axes and a shear (Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, JCGT 2013).
@@ -18,21 +19,25 @@ pub(crate) struct Shear<S> {
     /// The direction on these axes, scaled by a power of two to about 1, so that products with it
     /// neither overflow nor underflow.
     pub direction: [S; 3],
-    /// The direction on the third, unscaled.
-    pub forward: S,
+    /// The power of two.
+    pub scale: S,
 }
 
-/// The order of the axes that ends with each.
-const ORDERS: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+/// The order of the axes that ends with the largest, by what is less: x than y, x than z, y than z. The other two in either
+/// order: both sides of a triangle are hit.
+const ORDERS: [[usize; 3]; 8] = {
+    let [x, y, z] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+    [x, y, z, y, x, z, z, z]
+};
 
 impl<S: Scalar> Shear<S> {
     #[inline(always)]
     pub fn new(origin: &[S; 3], direction: &[S; 3]) -> Self {
-        let [x, y, z] = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
+        let [x, y, z] = *direction;
         // Without a branch: which axis it is cannot be foretold.
-        let (is_x, is_y) = ((x >= y) & (x >= z), y >= z);
-        // The other two in either order: both sides of a triangle are hit.
-        let axes = ORDERS[usize::from(!is_x) * (2 - usize::from(is_y))];
+        let [one, other] =
+            [[x, x, y, S::ONE], [y, z, z, S::ONE]].map(|lanes| S::Lanes4::of_array(lanes).abs());
+        let axes = ORDERS[one.lt(other) as usize & 7];
         let [i, j, k] = axes;
         let forward = direction[k];
         let scale = forward.inverse_power_of_two();
@@ -40,7 +45,7 @@ impl<S: Scalar> Shear<S> {
             origin: [origin[i], origin[j], origin[k]],
             axes,
             direction: [direction[i] * scale, direction[j] * scale, forward * scale],
-            forward,
+            scale,
         }
     }
 
@@ -60,9 +65,9 @@ impl<S: Scalar> Shear<S> {
         [x * dz - z * dx, y * dz - z * dy, z]
     }
 
-    /// The t at a third coordinate.
+    /// The t at a third coordinate, that is `depth` over `by`: of one division, since the scale is a power of two.
     #[inline(always)]
-    pub fn t(&self, z: S) -> S {
-        z / self.forward
+    pub fn t(&self, depth: S, by: S) -> S {
+        depth / (by * self.direction[2]) * self.scale
     }
 }

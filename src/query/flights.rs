@@ -87,6 +87,7 @@ pub(super) fn traverse_in_turns<
             let lanes = SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new::<F::Node, N>(
                 isa,
                 &flight.slabs,
+                flight.ray.t_max,
             );
             let mut pending = Pending::new(stack, flight.waiting);
             let visitor = &mut flight.visitor;

@@ -1,64 +1,89 @@
 //! The boxes of a wide node's children, tested all at once.
+//!
+//! Minima, maxima and their comparison are those of integers where the processor has them: they take one cycle each, those of
+//! numbers up to four, one after the other. On an Intel Xeon (Granite Rapids), five scenes, closest and any hits 1.04 to 1.06 times as
+//! quick with AVX2, 1.02 to 1.06 with AVX-512.
+//!
+//! Refused: each t as one fused product and sum, plane / direction - origin / direction, with paddings in the second. It takes
+//! another 1 ns off a step, and adds 2 to 8 ns to preparing a ray: as quick for rays of 5 to 10 steps.
 
 use crate::geometry::{Ray, Scalar, Slabs};
 use crate::layout::WideNode;
-use crate::simd::Lanes;
+use crate::simd::{Lanes, Lanes4};
 
 /// The slabs in lanes.
 pub(super) struct SlabLanes<S, L> {
     origin: [L; 3],
     inv_near: [L; 3],
     inv_far: [L; 3],
-    /// Where in a node the near planes of each axis lie, in bytes.
-    first: [usize; 3],
-    /// Where the far planes do.
-    last: [usize; 3],
+    /// Where in a node the near planes of each axis lie, and the far planes, in bytes.
+    places: [[usize; 2]; 3],
     pub t_min: S,
+    /// No plane's t is NaN, and t_min and all limits have a plus sign: then the order of numbers is that of their bits.
+    are_ordered_by_bits: bool,
 }
 
 impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
     #[inline(always)]
-    pub fn new<T: WideNode<S, N>, const N: usize>(isa: L::Isa, slabs: &Slabs<S>) -> Self {
+    pub fn new<T: WideNode<S, N>, const N: usize>(isa: L::Isa, slabs: &Slabs<S>, t_max: S) -> Self {
         let splat = |[x, y, z]: [S; 3]| [L::splat(isa, x), L::splat(isa, y), L::splat(isa, z)];
         let [x, y, z] = slabs.negative;
         let row = |axis: usize, is_max: bool| (2 * axis + usize::from(is_max)) * T::ROW;
+        let places = |axis: usize, is_max: bool| [row(axis, is_max), row(axis, !is_max)];
+        let [x_far, y_far, z_far] = slabs.inv_far;
+        let inv = S::Lanes4::of_array([x_far, y_far, z_far, S::ONE]).abs();
+        let are_finite = inv.lt(S::Lanes4::splat(S::INFINITY)) == 15;
         Self {
             origin: splat(slabs.origin),
             inv_near: splat(slabs.inv_near),
             inv_far: splat(slabs.inv_far),
-            first: [row(0, x), row(1, y), row(2, z)],
-            last: [row(0, !x), row(1, !y), row(2, !z)],
+            places: [places(0, x), places(1, y), places(2, z)],
             // +0, whose bits are those of an integer.
             t_min: slabs.t_min + S::ZERO,
+            are_ordered_by_bits: L::orders_by_bits(isa)
+                && are_finite & (slabs.t_min >= S::ZERO) & (t_max > S::ZERO),
         }
     }
 
     /// Where the ray enters the children's boxes, from t_min on, and which of them it meets up to `limit`.
     #[inline(always)]
     pub fn enter<const N: usize>(&self, node: &impl WideNode<S, N>, ray: &Ray<S>, limit: S) -> (L, u32) {
-        if self.t_min < S::ZERO {
+        let isa = self.origin[0].isa();
+        let (t_min, t_max) = (L::splat(isa, self.t_min), L::splat(isa, limit));
+        if self.are_ordered_by_bits {
+            // No far plane is crossed at -0, which as an integer is the least.
+            let after_zero = L::splat(isa, S::ONE / S::LARGE_VOLUME);
+            let slab = |axis: usize, [first, last]: [L; 2]| {
+                (first * self.inv_near[axis], last.mul_add(self.inv_far[axis], after_zero))
+            };
+            let (x, x_far) = slab(0, self.distances(node, 0));
+            let (y, y_far) = slab(1, self.distances(node, 1));
+            let (z, z_far) = slab(2, self.distances(node, 2));
+            let near = x.later(y).later(z.later(t_min));
+            let far = x_far.earlier(y_far).earlier(z_far.earlier(t_max));
+            (near, L::bits(near.not_after(far)) & node.lanes())
+        } else if self.t_min < S::ZERO {
             let (near, met) = enter_behind(node, ray, limit);
             // SAFETY: sixteen scalars, and no lanes are more.
-            (unsafe { L::load(self.origin[0].isa(), near.as_ptr()) }, met)
+            (unsafe { L::load(isa, near.as_ptr()) }, met)
         } else {
-            self.enter_ahead(node, limit)
+            // A plane through the origin, on an axis along which the ray does not move, is left out.
+            let (mut near, mut far) = (t_min, t_max);
+            for axis in 0..3 {
+                let [first, last] = self.distances(node, axis);
+                near = (first * self.inv_near[axis]).max(near);
+                far = (last * self.inv_far[axis]).min(far);
+            }
+            (near, L::bits(near.le(far)) & node.lanes())
         }
     }
 
-    /// The same for a ray that does not look behind its origin.
+    /// How far from the origin the near planes and the far planes across an axis are.
     #[inline(always)]
-    fn enter_ahead<const N: usize>(&self, node: &impl WideNode<S, N>, limit: S) -> (L, u32) {
-        let isa = self.origin[0].isa();
-        let (mut near, mut far) = (L::splat(isa, self.t_min), L::splat(isa, limit));
-        for axis in 0..3 {
-            // SAFETY: the places of `new`.
-            let [first, last] = unsafe { node.planes::<L>(isa, axis, [self.first[axis], self.last[axis]]) };
-            let (first, last) = (first - self.origin[axis], last - self.origin[axis]);
-            let (inv_near, inv_far) = (self.inv_near[axis], self.inv_far[axis]);
-            near = (first * inv_near).max(near);
-            far = (last * inv_far).min(far);
-        }
-        (near, L::bits(near.le(far)) & node.lanes())
+    fn distances<const N: usize>(&self, node: &impl WideNode<S, N>, axis: usize) -> [L; 2] {
+        // SAFETY: the places of `new`.
+        let [first, last] = unsafe { node.planes::<L>(self.origin[0].isa(), axis, self.places[axis]) };
+        [first - self.origin[axis], last - self.origin[axis]]
     }
 }
 

@@ -40,8 +40,11 @@ where
         let prepared = ray.prepare();
         let Some(mut next) = first(self, &prepared, visitor.limit()) else { return };
         let suits = suits::<P, F, N>(self, &prepared);
-        let lanes =
-            SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new::<F::Node, N>(isa, &prepared.slabs);
+        let lanes = SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new::<F::Node, N>(
+            isa,
+            &prepared.slabs,
+            ray.t_max,
+        );
         let mut memory = Memory::new();
         let mut pending = Pending::new(&mut memory, 0);
         while let Some(place) =
@@ -62,8 +65,11 @@ where
     ) {
         let prepared = *ray;
         let suits = suits::<P, F, N>(self, &prepared);
-        let lanes =
-            SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new::<F::Node, N>(isa, &prepared.slabs);
+        let lanes = SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new::<F::Node, N>(
+            isa,
+            &prepared.slabs,
+            ray.t_max,
+        );
         while let Some(place) = ahead.next_box() {
             if place.is_leaf() {
                 recorder.leaf();

@@ -3,7 +3,7 @@
 use crate::geometry::Scalar;
 use core::mem::MaybeUninit;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
-use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask};
+use fearless_simd::{Bytes, ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 /// Room for what a node puts on the stack.
 pub(crate) type Window<T> = [MaybeUninit<T>; 16];
@@ -56,6 +56,33 @@ pub trait Lanes<S: Scalar>:
     #[inline(always)]
     fn compress(_: Self::Isa, _: u32, _: &[u32], _: &mut Window<u32>) -> bool {
         false
+    }
+    /// `self * factor + more`, rounded once where the processor can, else twice: for what need not be the same bits everywhere.
+    #[doc(hidden)]
+    fn mul_add(self, factor: Self, more: Self) -> Self;
+    /// Whether [`later`](Self::later), [`earlier`](Self::earlier) and [`not_after`](Self::not_after) compare integers.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn orders_by_bits(_: Self::Isa) -> bool {
+        false
+    }
+    /// The larger in each lane of which none is NaN; of two below +0, which counts -0, any.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn later(self, other: Self) -> Self {
+        self.max(other)
+    }
+    /// The smaller in each lane of which none is NaN; of two below +0, which counts -0, any.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn earlier(self, other: Self) -> Self {
+        self.min(other)
+    }
+    /// `self <= other` where none is NaN and self is not below +0; -0 is.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn not_after(self, other: Self) -> Self::Mask {
+        self.le(other)
     }
     /// The instruction set.
     #[doc(hidden)]
@@ -115,6 +142,10 @@ macro_rules! lanes {
                 self.as_slice()[lane]
             }
             #[inline(always)]
+            fn mul_add(self, factor: Self, more: Self) -> Self {
+                SimdFloat::mul_add(self, factor, more)
+            }
+            #[inline(always)]
             fn isa(self) -> I {
                 self.token()
             }
@@ -169,9 +200,43 @@ fn has_x86_minimum<I: Simd>(isa: I) -> bool {
     cfg!(target_arch = "x86_64") && !isa.level().is_fallback()
 }
 
-lanes!(f32, f32x4, mask32x4, 4, {});
-lanes!(f32, f32x8, mask32x8, 8, {});
+/// The order of numbers above -0 is that of their bits as integers, which x86 finds in one cycle instead of four.
+macro_rules! by_bits {
+    ($integers:ident) => {
+        #[inline(always)]
+        fn orders_by_bits(isa: I) -> bool {
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            return isa.level().as_avx2().is_some();
+            // NEON and SIMD128 have them, and their minima of numbers have to look for NaN.
+            #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+            return !isa.level().is_fallback();
+        }
+        #[inline(always)]
+        fn later(self, other: Self) -> Self {
+            let [a, b] = [self, other].map(|x| x.bitcast::<fearless_simd::$integers<I>>());
+            SimdBase::max(a, b).bitcast()
+        }
+        #[inline(always)]
+        fn earlier(self, other: Self) -> Self {
+            let [a, b] = [self, other].map(|x| x.bitcast::<fearless_simd::$integers<I>>());
+            SimdBase::min(a, b).bitcast()
+        }
+        #[inline(always)]
+        fn not_after(self, other: Self) -> Self::Mask {
+            let [a, b] = [self, other].map(|x| x.bitcast::<fearless_simd::$integers<I>>());
+            a.simd_le(b)
+        }
+    };
+}
+
+lanes!(f32, f32x4, mask32x4, 4, {
+    by_bits!(i32x4);
+});
+lanes!(f32, f32x8, mask32x8, 8, {
+    by_bits!(i32x8);
+});
 lanes!(f32, f32x16, mask32x16, 16, {
+    by_bits!(i32x16);
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     fn sort(
@@ -278,6 +343,26 @@ impl<S: Scalar, L: Lanes<S>> Lanes<S> for Pair<L> {
     #[inline(always)]
     fn lane(self, lane: usize) -> S {
         if lane < L::COUNT { self.0.lane(lane) } else { self.1.lane(lane - L::COUNT) }
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, more: Self) -> Self {
+        Self(self.0.mul_add(factor.0, more.0), self.1.mul_add(factor.1, more.1))
+    }
+    #[inline(always)]
+    fn orders_by_bits(isa: L::Isa) -> bool {
+        L::orders_by_bits(isa)
+    }
+    #[inline(always)]
+    fn later(self, other: Self) -> Self {
+        Self(self.0.later(other.0), self.1.later(other.1))
+    }
+    #[inline(always)]
+    fn earlier(self, other: Self) -> Self {
+        Self(self.0.earlier(other.0), self.1.earlier(other.1))
+    }
+    #[inline(always)]
+    fn not_after(self, other: Self) -> Self::Mask {
+        Pair(self.0.not_after(other.0), self.1.not_after(other.1))
     }
     #[inline(always)]
     fn isa(self) -> L::Isa {

@@ -3,9 +3,9 @@
 
 use super::Barycentrics;
 use super::watertight::DOUBT;
-use crate::geometry::{PreparedRay, Scalar, Shear, Slabs, max};
+use crate::geometry::{PreparedRay, Scalar, Shear, Slabs};
 use crate::primitive::{Found, Leaf, Operands};
-use crate::simd::Lanes;
+use crate::simd::{Lanes, Lanes4};
 use core::marker::PhantomData;
 
 /// The leaf of [`Fast`](super::Fast) triangles: nine coordinates each.
@@ -53,7 +53,8 @@ impl<S: Scalar, const LOOKS_TWICE: bool> Leaf<S, Barycentrics<S>> for TriangleLe
 #[inline(always)]
 fn is_ordinary<S: Scalar>(ray: &PreparedRay<S>) -> bool {
     let [x, y, z] = ray.origin;
-    ray.t_min >= S::ZERO && max(max(x.abs(), y.abs()), z.abs()) < S::LARGE_AREA
+    let origin = S::Lanes4::of_array([x, y, z, S::ZERO]).abs();
+    (ray.t_min >= S::ZERO) & (origin.lt(S::Lanes4::splat(S::LARGE_AREA)) == 15)
 }
 
 /// The leaf of [`Precise`](super::Precise) triangles: nine coordinates each, by which those are left out whose sides
@@ -147,7 +148,8 @@ impl<S: Scalar, L: Lanes<S>> Sights<S, L> {
         let ([a, b, c], [z0, z1, z2]) = (self.weights, self.z);
         let (area, volume) = (a + b + c, a * z0 + b * z1 + c * z2);
         let zero = operands.splat(S::ZERO);
-        let t = volume / area / operands.splat(ray.shear.forward) + zero;
+        let [forward, scale] = [ray.shear.direction[2], ray.shear.scale].map(|x| operands.splat(x));
+        let t = volume / (area * forward) * scale + zero;
         // No infinity.
         let limit = if limit < S::MAX { limit } else { S::MAX };
         let in_reach = operands.splat(ray.t_min).le(t) & t.le(operands.splat(limit));
