@@ -4,6 +4,7 @@ use super::cut::Cut;
 use super::heuristic::{BuildNode, Heuristic, Own, Proposal, Split};
 use super::reference::{PrimRef, bounds, centroids};
 use crate::geometry::{Aabb, Axis, Scalar};
+use crate::simd::prefetch_ahead;
 
 /// What the driver needs to divide any node.
 pub(crate) struct Rules<'h, H: ?Sized> {
@@ -139,6 +140,8 @@ fn ceil_log2(n: usize) -> usize {
 fn partition<S: Scalar>(references: &mut [PrimRef<S>], is_left: impl Fn(&PrimRef<S>) -> bool) -> usize {
     let mut middle = 0;
     for i in 0..references.len() {
+        prefetch_ahead(&references[i]);
+        prefetch_ahead(&references[middle]);
         let goes_left = is_left(&references[i]);
         references.swap(i, middle);
         middle += usize::from(goes_left);

@@ -16,4 +16,4 @@ pub(crate) use backend::{Backend, Kernel};
 pub(crate) use lanes::{Count, Pair, Width, Window};
 pub use lanes::{Halves, Lanes};
 pub use pairs::Lanes4;
-pub(crate) use prefetch::prefetch;
+pub(crate) use prefetch::{prefetch, prefetch_ahead};

@@ -5,7 +5,7 @@ use super::grid::Grid;
 use super::proposal::{Proposal, Sides};
 use crate::build::reference::{PrimRef, three};
 use crate::geometry::{Aabb, Axis, Scalar};
-use crate::simd::{Halves, Kernel, Lanes};
+use crate::simd::{Halves, Kernel, Lanes, prefetch_ahead};
 use fearless_simd::Simd;
 
 /// The search for the cheapest plane between `N` bins on each axis, of which `count` are in use.
@@ -66,6 +66,7 @@ impl<S: Scalar, const N: usize> Bins<'_, S, N> {
         // More bins would take more of the stack than a worker may have.
         if N > 16 || self.references.len() < 8 * N {
             for reference in self.references {
+                prefetch_ahead(reference);
                 filled.count(isa, &grid, reference);
             }
             return filled;
@@ -75,6 +76,8 @@ impl<S: Scalar, const N: usize> Bins<'_, S, N> {
         let mut others = Filled::<S, I, N>::empty(isa);
         let (pairs, rest) = self.references.as_chunks::<2>();
         for [first, second] in pairs {
+            // Two lie in a line.
+            prefetch_ahead(first);
             filled.count(isa, &grid, first);
             others.count(isa, &grid, second);
         }
