@@ -66,7 +66,6 @@ impl<S: Scalar, const N: usize> Bins<'_, S, N> {
         // More bins would take more of the stack than a worker may have.
         if N > 16 || self.references.len() < 8 * N {
             for reference in self.references {
-                prefetch_ahead(reference);
                 filled.count(isa, &grid, reference);
             }
             return filled;
