@@ -19,6 +19,7 @@ use super::subtree::{Parent, Subtree, TASK_SIZE, join, task_child};
 use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
+use crate::simd::prefetch_ahead;
 use crate::tree::Tree;
 use alloc::vec;
 use alloc::vec::Vec;
@@ -55,7 +56,12 @@ pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
     watch: &Watch<'_>,
 ) -> Option<Tree<S>> {
     let mut references = take(&mut buffers.references);
-    let (aabb, primitives) = (bounds(&references), references.len());
+    let parts = references.chunks(TASK_SIZE).collect();
+    let boxes = parallel::map(parts, |part: &[PrimRef<S>]| {
+        bounds(part.iter().inspect(|reference| prefetch_ahead(*reference)))
+    });
+    let aabb = boxes.into_iter().fold(Aabb::EMPTY, Aabb::union);
+    let primitives = references.len();
     let whole = build_whole(&mut references, aabb, rules, watch, buffers);
     buffers.references = references;
     if watch.ask() == Pace::Stop {

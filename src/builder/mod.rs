@@ -15,7 +15,7 @@ use crate::geometry::Scalar;
 use crate::layout::{Layout, WideTree};
 use crate::parallel::{self, in_pool};
 use crate::primitive::Primitive;
-use crate::simd::{Backend, InstructionSet};
+use crate::simd::{Backend, InstructionSet, prefetch_ahead};
 use crate::tree::{MAX_DEPTH, Tree};
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -320,6 +320,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     ) -> Result<Vec<u32>, BuildError> {
         let is_flawed = AtomicBool::new(false);
         parallel::collect(primitives, references, |index, primitive| {
+            prefetch_ahead(primitive);
             let reference = PrimRef::new(primitive.aabb(), index as u32);
             if reference.flaw().is_some() {
                 is_flawed.store(true, Relaxed);

@@ -6,7 +6,7 @@ use crate::build::reference::PrimRef;
 use crate::build::subtree::TASK_SIZE;
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
-use crate::simd::{Backend, Kernel};
+use crate::simd::{Backend, Kernel, prefetch_ahead};
 use alloc::vec::Vec;
 use fearless_simd::Simd;
 
@@ -60,6 +60,7 @@ impl<S: Scalar> Kernel for Codes<'_, S> {
     fn run<I: Simd>(self, isa: I) {
         let grid = Grid::<S, I>::new(isa, self.scene.min, self.scene.per_unit(1 << BITS), 1 << BITS);
         for (code, reference) in self.codes.iter_mut().zip(self.references) {
+            prefetch_ahead(reference);
             let [min, max] = grid.corners(isa, reference);
             let [x, y, z] = grid.cells(min, max).map(|cell| spread(cell as u32));
             *code = x << 2 | y << 1 | z;
