@@ -1,7 +1,6 @@
 //! The ray: an origin, a direction, and the interval of t that counts.
 
 use super::{PreparedRay, Scalar};
-use crate::simd::Lanes4;
 use core::fmt;
 
 /// The points `origin + t * direction` with t in the closed interval [`t_min`, `t_max`].
@@ -109,11 +108,11 @@ impl<S: Scalar> Ray<S> {
     /// The same question as [`validate`](Self::validate), without branches.
     #[inline(always)]
     pub(crate) fn is_valid(&self) -> bool {
-        let lanes = |[x, y, z]: [S; 3]| S::Lanes4::of_array([x, y, z, S::ZERO]).abs();
-        let (origin, direction) = (lanes(self.origin), lanes(self.direction));
-        let (zero, infinity) = (S::Lanes4::splat(S::ZERO), S::Lanes4::splat(S::INFINITY));
-        let finite = origin.lt(infinity) & direction.lt(infinity);
-        (finite == 15) & (zero.lt(direction) != 0) & (self.t_min <= self.t_max)
+        let ([ox, oy, oz], [dx, dy, dz]) = (self.origin, self.direction);
+        let finite = |x: S| x.abs() < S::INFINITY;
+        (finite(ox) & finite(oy) & finite(oz) & finite(dx) & finite(dy) & finite(dz))
+            & ((dx != S::ZERO) | (dy != S::ZERO) | (dz != S::ZERO))
+            & (self.t_min <= self.t_max)
     }
 }
 

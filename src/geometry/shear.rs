@@ -1,7 +1,6 @@
 //! The frame of a ray: what a point looks like from behind the ray.
 
 use super::{Scalar, Vector};
-use crate::simd::Lanes4;
 
 /// The frame in which a ray starts at the origin and runs along the third axis: a shift, a permutation
 /// of the axes and a shear (Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, JCGT 2013).
@@ -23,21 +22,17 @@ pub(crate) struct Shear<S> {
     pub scale: S,
 }
 
-/// The order of the axes that ends with the largest, by what is less: x than y, x than z, y than z. The other two in either
-/// order: both sides of a triangle are hit.
-const ORDERS: [[usize; 3]; 8] = {
-    let [x, y, z] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
-    [x, y, z, y, x, z, z, z]
-};
+/// The order of the axes that ends with each.
+const ORDERS: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 impl<S: Scalar> Shear<S> {
     #[inline(always)]
     pub fn new(origin: &[S; 3], direction: &[S; 3]) -> Self {
-        let [x, y, z] = *direction;
+        let [x, y, z] = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
         // Without a branch: which axis it is cannot be foretold.
-        let [one, other] =
-            [[x, x, y, S::ONE], [y, z, z, S::ONE]].map(|lanes| S::Lanes4::of_array(lanes).abs());
-        let axes = ORDERS[one.lt(other) as usize & 7];
+        let (is_x, is_y) = ((x >= y) & (x >= z), y >= z);
+        // The other two in either order: both sides of a triangle are hit.
+        let axes = ORDERS[usize::from(!is_x) * (2 - usize::from(is_y))];
         let [i, j, k] = axes;
         let forward = direction[k];
         let scale = forward.inverse_power_of_two();

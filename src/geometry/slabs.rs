@@ -1,7 +1,6 @@
 //! The slab test: where along a ray a box begins and ends.
 
 use super::{Aabb, Ray, Scalar, max, min};
-use crate::simd::Lanes4;
 
 /// A ray prepared for slab tests: the interval of t inside a box is the intersection of its three
 /// slabs (Kay and Kajiya 1986).
@@ -43,15 +42,12 @@ impl<S: Scalar> Slabs<S> {
     pub fn new(ray: &Ray<S>) -> Self {
         let padding = S::from_f64(5.0) * S::EPSILON;
         let [dx, dy, dz] = ray.direction;
-        let splat = |value: S| S::Lanes4::splat(value);
-        let inv = splat(S::ONE).div(S::Lanes4::of_array([dx, dy, dz, S::ONE]));
-        let three = |[x, y, z, _]: [S; 4]| [x, y, z];
-        let signs = inv.lt(splat(S::ZERO));
+        let inv = [S::ONE / dx, S::ONE / dy, S::ONE / dz];
         Self {
             origin: ray.origin,
-            inv_near: three(inv.mul(splat(S::ONE - padding)).to_array()),
-            inv_far: three(inv.mul(splat(S::ONE + padding)).to_array()),
-            negative: [signs & 1 != 0, signs & 2 != 0, signs & 4 != 0],
+            inv_near: inv.map(|i| i * (S::ONE - padding)),
+            inv_far: inv.map(|i| i * (S::ONE + padding)),
+            negative: inv.map(|i| i < S::ZERO),
             t_min: ray.t_min,
         }
     }

@@ -9,7 +9,7 @@
 
 use crate::geometry::{Ray, Scalar, Slabs};
 use crate::layout::WideNode;
-use crate::simd::{Lanes, Lanes4};
+use crate::simd::Lanes;
 
 /// The slabs in lanes.
 pub(super) struct SlabLanes<S, L> {
@@ -30,9 +30,7 @@ impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
         let [x, y, z] = slabs.negative;
         let row = |axis: usize, is_max: bool| (2 * axis + usize::from(is_max)) * T::ROW;
         let places = |axis: usize, is_max: bool| [row(axis, is_max), row(axis, !is_max)];
-        let [x_far, y_far, z_far] = slabs.inv_far;
-        let inv = S::Lanes4::of_array([x_far, y_far, z_far, S::ONE]).abs();
-        let are_finite = inv.lt(S::Lanes4::splat(S::INFINITY)) == 15;
+        let [far_x, far_y, far_z] = slabs.inv_far.map(|inv| inv.abs() < S::INFINITY);
         Self {
             origin: splat(slabs.origin),
             inv_near: splat(slabs.inv_near),
@@ -41,7 +39,7 @@ impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
             // +0, whose bits are those of an integer.
             t_min: slabs.t_min + S::ZERO,
             are_ordered_by_bits: L::orders_by_bits(isa)
-                && are_finite & (slabs.t_min >= S::ZERO) & (t_max > S::ZERO),
+                && far_x & far_y & far_z & (slabs.t_min >= S::ZERO) & (t_max > S::ZERO),
         }
     }
 

@@ -11,15 +11,8 @@ pub trait Lanes4<S>: Copy {
     fn of_halves(first: S, second: S) -> Self;
     /// The same in all lanes.
     fn splat(value: S) -> Self;
-    fn of_array(values: [S; 4]) -> Self;
-    fn to_array(self) -> [S; 4];
-    fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
-    fn div(self, other: Self) -> Self;
-    fn abs(self) -> Self;
-    /// Whether `self < other` in each lane; false for NaN. Bit k is lane k's.
-    fn lt(self, other: Self) -> u32;
     /// The larger in each lane, `other`'s where either is NaN.
     fn max(self, other: Self) -> Self;
     /// The first two lanes, and the other two with their signs turned.
@@ -42,36 +35,12 @@ macro_rules! portable {
                 [value; 4]
             }
             #[inline(always)]
-            fn of_array(values: [$scalar; 4]) -> Self {
-                values
-            }
-            #[inline(always)]
-            fn to_array(self) -> [$scalar; 4] {
-                self
-            }
-            #[inline(always)]
-            fn add(self, other: Self) -> Self {
-                core::array::from_fn(|lane| self[lane] + other[lane])
-            }
-            #[inline(always)]
             fn sub(self, other: Self) -> Self {
                 core::array::from_fn(|lane| self[lane] - other[lane])
             }
             #[inline(always)]
             fn mul(self, other: Self) -> Self {
                 core::array::from_fn(|lane| self[lane] * other[lane])
-            }
-            #[inline(always)]
-            fn div(self, other: Self) -> Self {
-                core::array::from_fn(|lane| self[lane] / other[lane])
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                self.map(<$scalar>::abs)
-            }
-            #[inline(always)]
-            fn lt(self, other: Self) -> u32 {
-                (0..4).fold(0, |bits, lane| bits | u32::from(self[lane] < other[lane]) << lane)
             }
             #[inline(always)]
             fn max(self, other: Self) -> Self {
@@ -115,36 +84,12 @@ impl Lanes4<f32> for glam::Vec4 {
         Self::splat(value)
     }
     #[inline(always)]
-    fn of_array(values: [f32; 4]) -> Self {
-        Self::from_array(values)
-    }
-    #[inline(always)]
-    fn to_array(self) -> [f32; 4] {
-        Self::to_array(&self)
-    }
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self + other
-    }
-    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         self - other
     }
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
         self * other
-    }
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        self / other
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self::abs(self)
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> u32 {
-        self.cmplt(other).bitmask()
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {

@@ -3,9 +3,9 @@
 
 use super::Barycentrics;
 use super::watertight::DOUBT;
-use crate::geometry::{PreparedRay, Scalar, Shear, Slabs};
+use crate::geometry::{PreparedRay, Scalar, Shear, Slabs, max};
 use crate::primitive::{Found, Leaf, Operands};
-use crate::simd::{Lanes, Lanes4};
+use crate::simd::Lanes;
 use core::marker::PhantomData;
 
 /// The leaf of [`Fast`](super::Fast) triangles: nine coordinates each.
@@ -53,8 +53,7 @@ impl<S: Scalar, const LOOKS_TWICE: bool> Leaf<S, Barycentrics<S>> for TriangleLe
 #[inline(always)]
 fn is_ordinary<S: Scalar>(ray: &PreparedRay<S>) -> bool {
     let [x, y, z] = ray.origin;
-    let origin = S::Lanes4::of_array([x, y, z, S::ZERO]).abs();
-    (ray.t_min >= S::ZERO) & (origin.lt(S::Lanes4::splat(S::LARGE_AREA)) == 15)
+    ray.t_min >= S::ZERO && max(max(x.abs(), y.abs()), z.abs()) < S::LARGE_AREA
 }
 
 /// The leaf of [`Precise`](super::Precise) triangles: nine coordinates each, by which those are left out whose sides
