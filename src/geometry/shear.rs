@@ -18,8 +18,8 @@ pub(crate) struct Shear<S> {
     /// The direction on these axes, scaled by a power of two to about 1, so that products with it
     /// neither overflow nor underflow.
     pub direction: [S; 3],
-    /// The power of two.
-    pub scale: S,
+    /// The direction on the third, unscaled.
+    pub forward: S,
 }
 
 /// The order of the axes that ends with each.
@@ -40,7 +40,7 @@ impl<S: Scalar> Shear<S> {
             origin: [origin[i], origin[j], origin[k]],
             axes,
             direction: [direction[i] * scale, direction[j] * scale, forward * scale],
-            scale,
+            forward,
         }
     }
 
@@ -60,9 +60,9 @@ impl<S: Scalar> Shear<S> {
         [x * dz - z * dx, y * dz - z * dy, z]
     }
 
-    /// The t at a third coordinate, that is `depth` over `by`: of one division, since the scale is a power of two.
+    /// The t at a third coordinate.
     #[inline(always)]
-    pub fn t(&self, depth: S, by: S) -> S {
-        depth / (by * self.direction[2]) * self.scale
+    pub fn t(&self, z: S) -> S {
+        z / self.forward
     }
 }

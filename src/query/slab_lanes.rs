@@ -1,13 +1,23 @@
 //! The boxes of a wide node's children, tested all at once.
 //!
-//! Minima, maxima and their comparison are those of integers where the processor has them: they take one cycle each, those of
-//! numbers up to four, one after the other. On an Intel Xeon (Granite Rapids), in an ordinary build, means of three scenes: closest hits
-//! 1.03 to 1.06 times as quick with AVX2 and 1.01 to 1.03 with AVX-512, any hits 1.01 to 1.03 with either (the one division for t is in these,
-//! see `Shear::t`). In a build for that processor AVX2's are 1.2 times as quick.
+//! Minima, maxima and their comparison are those of integers where the processor has them: on an Intel Xeon (Granite Rapids)
+//! they take one cycle each, those of numbers up to four, one after the other. In an ordinary build, means of three scenes,
+//! closest hits were 1.03 to 1.06 times as quick with AVX2 and 1.01 to 1.03 with AVX-512, any hits 1.01 to 1.03 with either;
+//! in a build for that processor alone, all kinds of rays with AVX2 1.19 to 1.26.
 //!
-//! Refused: each t as one fused product and sum, plane / direction - origin / direction, with paddings in the second. It takes
-//! another 1 ns off a step, and adds 2 to 8 ns to preparing a ray: as quick for rays of 5 to 10 steps. And to prepare rays in four lanes: 1 ns
-//! less, but 20 more where a ray is asked right after it was written, since what was written in parts is not there yet as a whole.
+//! Refused: each t as one fused product and sum, plane / direction - origin / direction, where the sum's second part is
+//! padded for what it loses. A step takes another nanosecond less, but to prepare a ray takes 2 to 8 more: rays of 5 to 10
+//! steps gain nothing. And to prepare rays in four lanes: a nanosecond less, but 20 more where a ray is asked right after it
+//! was written, since what was written in parts cannot be read as a whole yet.
+//!
+//! # As integers
+//!
+//! Floats above -0 are ordered as their bits are, and all below +0, as integers, come before them. No t is NaN: planes and
+//! origin are none, and the inverses are finite and not zero. An entry is the largest of three t and t_min, which is not below
+//! +0: a t below is never taken, whichever of two. An exit is the smallest of three t and the limit: if one is below +0 so is
+//! what is taken, and the box is left out, which it has to be unless t is -0. So exits get a little more, by which none is -0.
+//! They are never before those of [`Slabs`], since rounding is monotone, once or twice: no box is left out that those meet.
+//! Boxes beyond may be met with one instruction set and not with another; answers are the same.
 
 use crate::geometry::{Ray, Scalar, Slabs};
 use crate::layout::WideNode;
@@ -21,7 +31,8 @@ pub(super) struct SlabLanes<S, L> {
     /// Where in a node the near planes of each axis lie, and the far planes, in bytes.
     places: [[usize; 2]; 3],
     pub t_min: S,
-    /// No plane's t is NaN, and t_min and all limits have a plus sign: then the order of numbers is that of their bits.
+    /// What is said above holds: inverses are finite, and neither t_min nor t_max has a minus sign. Later limits have none
+    /// either, since no hit's t has (see `query::accept` and the packed leaves).
     are_ordered_by_bits: bool,
 }
 
@@ -51,7 +62,8 @@ impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
         let isa = self.origin[0].isa();
         let (t_min, t_max) = (L::splat(isa, self.t_min), L::splat(isa, limit));
         if self.are_ordered_by_bits {
-            // No far plane is crossed at -0, which as an integer is the least.
+            debug_assert!(limit.total_cmp(&S::ZERO).is_ge(), "no limit is -0");
+            // No far plane is crossed at -0.
             let after_zero = L::splat(isa, S::ONE / S::LARGE_VOLUME);
             let slab = |axis: usize, [first, last]: [L; 2]| {
                 (first * self.inv_near[axis], last.mul_add(self.inv_far[axis], after_zero))

@@ -57,7 +57,7 @@ pub trait Lanes<S: Scalar>:
     fn compress(_: Self::Isa, _: u32, _: &[u32], _: &mut Window<u32>) -> bool {
         false
     }
-    /// `self * factor + more`, rounded once where the processor can, else twice: for what need not be the same bits everywhere.
+    /// `self * factor + more`, rounded once where the processor can, else twice: not for answers.
     #[doc(hidden)]
     fn mul_add(self, factor: Self, more: Self) -> Self;
     /// Whether [`later`](Self::later), [`earlier`](Self::earlier) and [`not_after`](Self::not_after) compare integers.
@@ -66,19 +66,19 @@ pub trait Lanes<S: Scalar>:
     fn orders_by_bits(_: Self::Isa) -> bool {
         false
     }
-    /// The larger in each lane of which none is NaN; of two below +0, which counts -0, any.
+    /// The larger in each lane, where none is NaN. Which of two with a minus sign is open.
     #[doc(hidden)]
     #[inline(always)]
     fn later(self, other: Self) -> Self {
         self.max(other)
     }
-    /// The smaller in each lane of which none is NaN; of two below +0, which counts -0, any.
+    /// The smaller in each lane, where none is NaN. Which of two with a minus sign is open.
     #[doc(hidden)]
     #[inline(always)]
     fn earlier(self, other: Self) -> Self {
         self.min(other)
     }
-    /// `self <= other` where none is NaN and self is not below +0; -0 is.
+    /// `self <= other`, where none is NaN and `self` has a plus sign; false if `other` has a minus sign.
     #[doc(hidden)]
     #[inline(always)]
     fn not_after(self, other: Self) -> Self::Mask {
@@ -200,7 +200,7 @@ fn has_x86_minimum<I: Simd>(isa: I) -> bool {
     cfg!(target_arch = "x86_64") && !isa.level().is_fallback()
 }
 
-/// The order of numbers above -0 is that of their bits as integers, which x86 finds in one cycle instead of four.
+/// The order of numbers above -0 is that of their bits as integers, which some processors find in a quarter of the time.
 macro_rules! by_bits {
     ($integers:ident) => {
         #[inline(always)]

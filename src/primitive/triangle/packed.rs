@@ -147,8 +147,7 @@ impl<S: Scalar, L: Lanes<S>> Sights<S, L> {
         let ([a, b, c], [z0, z1, z2]) = (self.weights, self.z);
         let (area, volume) = (a + b + c, a * z0 + b * z1 + c * z2);
         let zero = operands.splat(S::ZERO);
-        let [forward, scale] = [ray.shear.direction[2], ray.shear.scale].map(|x| operands.splat(x));
-        let t = volume / (area * forward) * scale + zero;
+        let t = volume / area / operands.splat(ray.shear.forward) + zero;
         // No infinity.
         let limit = if limit < S::MAX { limit } else { S::MAX };
         let in_reach = operands.splat(ray.t_min).le(t) & t.le(operands.splat(limit));

@@ -48,7 +48,7 @@ impl<S: Scalar> Sight<S> {
     #[inline(always)]
     pub fn hit(&self, shear: &Shear<S>) -> (S, Barycentrics<S>) {
         let Self { weights: [_, b, c], area, volume, .. } = *self;
-        (shear.t(volume, area), Barycentrics { u: b / area, v: c / area })
+        (shear.t(volume / area), Barycentrics { u: b / area, v: c / area })
     }
 }
 

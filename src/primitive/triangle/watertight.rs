@@ -61,7 +61,7 @@ pub(super) fn watertight_widest<S: Scalar>(
         Some(sight.hit(shear))
     } else {
         let (depth, at) = settle_widest(sight.corners.map(S::Vec3::to_array))?;
-        Some((shear.t(depth, S::ONE), at))
+        Some((shear.t(depth), at))
     }
 }
 
@@ -142,7 +142,7 @@ fn settle<S: Scalar>(
     }
     let [origin, direction] = ray.map(widen);
     let shear = Shear::new(&origin, &direction);
-    let t = shear.t(plane_depth(corners.map(widen), &shear), S::Wide::ONE);
+    let t = shear.t(plane_depth(corners.map(widen), &shear));
     Some((S::narrow(t), Barycentrics { u: S::narrow(b / area), v: S::narrow(c / area) }))
 }
 
