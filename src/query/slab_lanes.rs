@@ -3,12 +3,13 @@
 //! Minima, maxima and their comparison are those of integers where the processor has them: on an Intel Xeon (Granite Rapids)
 //! they take one cycle each, those of numbers up to four, one after the other. In an ordinary build, means of three scenes,
 //! closest hits were 1.03 to 1.06 times as quick with AVX2 and 1.01 to 1.03 with AVX-512, any hits 1.01 to 1.03 with either;
-//! in a build for that processor alone, all kinds of rays with AVX2 1.19 to 1.26.
+//! in a build for that processor alone, all kinds of rays with AVX2 1.19 to 1.27. (In all of these t took one division instead
+//! of two, which is worth 0 to 1 % and was given up.)
 //!
 //! Refused: each t as one fused product and sum, plane / direction - origin / direction, where the sum's second part is
-//! padded for what it loses. A step takes another nanosecond less, but to prepare a ray takes 2 to 8 more: rays of 5 to 10
-//! steps gain nothing. And to prepare rays in four lanes: a nanosecond less, but 20 more where a ray is asked right after it
-//! was written, since what was written in parts cannot be read as a whole yet.
+//! padded for what it loses. A step takes another nanosecond less, but to prepare a ray takes 7 to 10 more: rays of 5 to 10
+//! steps gain nothing. And to prepare rays in four lanes: a nanosecond less, but 15 to 30 more where a ray is asked right after
+//! it was written, since what was written in parts cannot be read as a whole yet.
 //!
 //! # As integers
 //!

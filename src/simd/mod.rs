@@ -2,7 +2,8 @@
 //!
 //! Kernels are generic inline functions over [`Lanes`], compiled once for each instruction set below one
 //! `#[target_feature]` function (see [`InstructionSet`]). Arithmetic is the plain IEEE 754 one on all of
-//! them, nothing fused but in [`Lanes`]' `mul_add`, which no answer is made of: equal operands give equal bits whatever the machine.
+//! them, nothing fused but in [`Lanes`]' `mul_add`, which no answer is made of: equal operands give equal bits
+//! whatever the machine.
 
 #[cfg(target_arch = "x86_64")]
 mod avx512;
