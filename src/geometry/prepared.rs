@@ -22,6 +22,7 @@ pub struct PreparedRay<S: Scalar = f32> {
 impl<S: Scalar> PreparedRay<S> {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray<S>) -> Self {
+        let ray = &ray.read();
         Self::of_parts(ray, Slabs::new(ray), Shear::new(&ray.origin, &ray.direction))
     }
 

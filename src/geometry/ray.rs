@@ -1,6 +1,8 @@
 //! The ray: an origin, a direction, and the interval of t that counts.
 
-use super::{PreparedRay, Scalar};
+use super::{PreparedRay, Scalar, min};
+use crate::simd::read_each;
+use core::array::from_ref;
 use core::fmt;
 
 /// The points `origin + t * direction` with t in the closed interval [`t_min`, `t_max`].
@@ -90,6 +92,14 @@ impl<S: Scalar> Ray<S> {
         PreparedRay::new(self)
     }
 
+    /// A copy, as quick of a ray that has just been written as of an older one.
+    #[inline(always)]
+    pub(super) fn read(&self) -> Self {
+        let Self { origin, direction, t_min, t_max } = self;
+        let ([t_min], [t_max]) = (read_each(from_ref(t_min)), read_each(from_ref(t_max)));
+        Self { origin: read_each(origin), direction: read_each(direction), t_min, t_max }
+    }
+
     /// What makes this ray hit nothing, if anything does.
     pub fn validate(&self) -> Result<(), RayError> {
         if !self.origin.iter().all(|x| x.is_finite()) {
@@ -105,13 +115,30 @@ impl<S: Scalar> Ray<S> {
         if self.t_min <= self.t_max { Ok(()) } else { Err(RayError::Interval) }
     }
 
-    /// The same question as [`validate`](Self::validate), without branches.
+    /// The same question as [`validate`](Self::validate), answered at once for most.
     #[inline(always)]
     pub(crate) fn is_valid(&self) -> bool {
+        #[cold]
+        #[inline(never)]
+        fn of_others<S: Scalar>(ray: &Ray<S>) -> bool {
+            ray.validate().is_ok()
+        }
+        self.is_ordinary() || of_others(self)
+    }
+
+    /// Whether nothing about the ray is special, as for most: it is valid, looks ahead of its origin and nowhere else,
+    /// its direction has no component zero or so small, or large, that the inverse would not be of full precision, and
+    /// nothing is so large that a product of two would overflow. One question without branches in place of several.
+    #[inline(always)]
+    pub(crate) fn is_ordinary(&self) -> bool {
         let ([ox, oy, oz], [dx, dy, dz]) = (self.origin, self.direction);
-        let finite = |x: S| x.abs() < S::INFINITY;
-        (finite(ox) & finite(oy) & finite(oz) & finite(dx) & finite(dy) & finite(dz))
-            & ((dx != S::ZERO) | (dy != S::ZERO) | (dz != S::ZERO))
+        let ([ox, oy, oz], [dx, dy, dz]) = ([ox.abs(), oy.abs(), oz.abs()], [dx.abs(), dy.abs(), dz.abs()]);
+        // Sums are NaN if a part is; then the minimum does not count.
+        (ox + oy + oz < S::LARGE_AREA)
+            & (dx + dy + dz < S::LARGE_AREA)
+            & (min(min(dx, dy), dz) > S::ONE / S::LARGE_AREA)
+            & (self.t_min >= S::ZERO)
+            & (self.t_max > S::ZERO)
             & (self.t_min <= self.t_max)
     }
 }
@@ -140,5 +167,36 @@ mod tests {
             assert_eq!(ray.validate(), expected, "{ray:?}");
             assert_eq!(ray.is_valid(), expected.is_ok(), "{ray:?}");
         }
+    }
+
+    /// One scalar after another is replaced in an ordinary ray.
+    #[test]
+    fn what_is_ordinary_is_valid_and_has_what_is_said_of_it() {
+        let values = [f32::NAN, f32::INFINITY, 1e38, 1.2e18, 1.1e18, 1.0, 8.7e-19, 8.6e-19, 1e-39, 0.0];
+        let usual = Ray::new([0.5f32, -0.5, 2.0], [1.0, -0.25, 0.125]).with_interval(0.25, 8.0);
+        let (mut ordinary, mut special) = (0, 0);
+        for value in values.into_iter().flat_map(|x| [x, -x]) {
+            for place in 0..8 {
+                let mut ray = usual;
+                match place {
+                    0..3 => ray.origin[place] = value,
+                    3..6 => ray.direction[place - 3] = value,
+                    6 => ray.t_min = value,
+                    _ => ray.t_max = value,
+                }
+                assert_eq!(ray.is_valid(), ray.validate().is_ok(), "{ray:?}");
+                if !ray.is_ordinary() {
+                    special += 1;
+                    continue;
+                }
+                ordinary += 1;
+                assert!(ray.validate().is_ok(), "{ray:?}");
+                let small = |x: f32| x.abs() < f32::LARGE_AREA;
+                assert!(ray.origin.into_iter().chain(ray.direction).all(small), "{ray:?}");
+                assert!(ray.direction.iter().all(|x| x.recip().is_normal() && small(x.recip())), "{ray:?}");
+                assert!(ray.t_min >= 0.0 && ray.t_max > 0.0, "{ray:?}");
+            }
+        }
+        assert!(ordinary > 50 && special > 50, "{ordinary} {special}");
     }
 }

@@ -71,6 +71,9 @@ pub trait Scalar:
 
     /// The absolute value.
     fn abs(self) -> Self;
+    /// Whether it is below zero, or -0.
+    #[doc(hidden)]
+    fn has_minus_sign(self) -> bool;
     /// Itself, with its sign turned if `other` has a minus sign.
     fn turned_by(self, other: Self) -> Self;
     /// The square root, rounded correctly; NaN below zero.
@@ -169,6 +172,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn abs(self) -> Self {
                 $scalar::abs(self)
+            }
+            #[inline(always)]
+            fn has_minus_sign(self) -> bool {
+                self.is_sign_negative()
             }
             #[inline(always)]
             fn turned_by(self, other: Self) -> Self {

@@ -35,6 +35,8 @@ pub(crate) struct Slabs<S> {
     /// The near plane is the box's maximum: the direction's sign bit, so that -0 is like +0.
     pub negative: [bool; 3],
     pub t_min: S,
+    /// Of the ray: see [`Ray::is_ordinary`].
+    pub is_ordinary: bool,
 }
 
 impl<S: Scalar> Slabs<S> {
@@ -47,8 +49,9 @@ impl<S: Scalar> Slabs<S> {
             origin: ray.origin,
             inv_near: inv.map(|i| i * (S::ONE - padding)),
             inv_far: inv.map(|i| i * (S::ONE + padding)),
-            negative: inv.map(|i| i < S::ZERO),
+            negative: ray.direction.map(S::has_minus_sign),
             t_min: ray.t_min,
+            is_ordinary: ray.is_ordinary(),
         }
     }
 

@@ -92,15 +92,15 @@ unsafe impl<S: Scalar, const N: usize> Node<S, N> for CompactNode<S, N> {
     }
 
     #[inline(always)]
-    unsafe fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, places: [usize; 2]) -> [L; 2] {
+    unsafe fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, first: usize) -> [L; 2] {
         const { assert!(N == L::COUNT) }
-        let [first, last] = places;
-        let rows = self.places.as_ptr().cast::<u8>();
+        let rows = self.places[axis].as_ptr().cast::<u8>();
         let (origin, scale) = (L::splat(isa, self.grid.origin[axis]), L::splat(isa, self.grid.scale[axis]));
-        // SAFETY: rows of N bytes, at these places by the caller's word.
-        let [first, last] =
-            unsafe { [L::load_bytes(isa, rows.add(first)), L::load_bytes(isa, rows.add(last))] };
-        [origin + first * scale, origin + last * scale]
+        let row = |place: usize| {
+            // SAFETY: one of the axis' two rows of N bytes, by the caller's word.
+            origin + unsafe { L::load_bytes(isa, rows.add(place)) } * scale
+        };
+        [row(first), row(first ^ Self::ROW)]
     }
 
     fn child(&self, lane: usize) -> Option<(Aabb<S>, Reference)> {
@@ -228,14 +228,8 @@ mod tests {
         #[inline(always)]
         fn run<I: Simd>(self, isa: I) -> Self::Output {
             from_fn(|axis| {
-                // SAFETY: the places of the axis' rows.
-                let planes = unsafe {
-                    self.0.planes::<<Count<N> as Width>::Lanes<S, I>>(
-                        isa,
-                        axis,
-                        [2 * axis * N, (2 * axis + 1) * N],
-                    )
-                };
+                // SAFETY: one of three axes, and its first row.
+                let planes = unsafe { self.0.planes::<<Count<N> as Width>::Lanes<S, I>>(isa, axis, 0) };
                 planes.map(|planes| {
                     let mut scalars = [S::ZERO; N];
                     planes.store(&mut scalars);

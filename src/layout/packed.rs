@@ -70,12 +70,14 @@ unsafe impl<S: Scalar, const N: usize> Node<S, N> for WideNode<S, N> {
     }
 
     #[inline(always)]
-    unsafe fn planes<L: Lanes<S>>(&self, isa: L::Isa, _: usize, places: [usize; 2]) -> [L; 2] {
+    unsafe fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, first: usize) -> [L; 2] {
         const { assert!(N == L::COUNT) }
-        let [first, last] = places;
-        let rows = self.planes.as_ptr().cast::<u8>();
-        // SAFETY: rows of N scalars, at these places by the caller's word.
-        unsafe { [L::load(isa, rows.add(first).cast()), L::load(isa, rows.add(last).cast())] }
+        let rows = self.planes[axis].as_ptr().cast::<u8>();
+        let row = |place: usize| {
+            // SAFETY: one of the axis' two rows of N scalars, by the caller's word.
+            unsafe { L::load(isa, rows.add(place).cast()) }
+        };
+        [row(first), row(first ^ Self::ROW)]
     }
 
     fn child(&self, lane: usize) -> Option<(Aabb<S>, Reference)> {

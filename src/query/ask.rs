@@ -33,12 +33,13 @@ impl<'a, P: Intersect, L: Traverse<P>, R: Recorder, Q: Question<'a, P>> Kernel f
     #[inline(always)]
     fn run<I: Simd>(self, isa: I) -> Q::Answer {
         let Self { layout, primitives, ray, recorder, .. } = self;
-        if !ray.is_valid() {
+        let prepared = ray.prepare();
+        if !prepared.slabs.is_ordinary && !ray.is_valid() {
             return Q::NONE;
         }
         recorder.ray();
         let mut question = Q::new(primitives, ray);
-        layout.traverse(isa, ray, &mut question, recorder);
+        layout.traverse(isa, &prepared, ray, &mut question, recorder);
         question.answer()
     }
 }

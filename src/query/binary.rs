@@ -31,11 +31,12 @@ impl<P: Intersect> Traverse<P> for Tree<P::Scalar> {
     fn traverse<I: Simd>(
         &self,
         _: I,
-        ray: &Ray<P::Scalar>,
+        ray: &PreparedRay<P::Scalar>,
+        _: &Ray<P::Scalar>,
         visitor: &mut impl Visitor<P>,
         recorder: &mut impl Recorder,
     ) {
-        walk(self, &ray.prepare(), visitor, recorder);
+        walk(self, ray, visitor, recorder);
     }
 
     #[inline(always)]

@@ -5,8 +5,7 @@
 
 use super::Visitor;
 use super::pending::{Memory, Pending};
-use super::slab_lanes::SlabLanes;
-use super::wide::{first, step, suits};
+use super::wide::{Row, WideRay, first, step};
 use crate::geometry::{PreparedRay, Ray, Shear, Slabs};
 use crate::layout::{Form, Reference, WideTree};
 use crate::primitive::Intersect;
@@ -23,7 +22,6 @@ struct Flight<P: Intersect, V> {
     ray: Ray<P::Scalar>,
     slabs: Slabs<P::Scalar>,
     shear: Shear<P::Scalar>,
-    suits: bool,
     next: Reference,
     /// On the stack.
     waiting: usize,
@@ -54,17 +52,7 @@ pub(super) fn traverse_in_turns<
             let PreparedRay { slabs, shear, .. } = prepared;
             match first(tree, &prepared, visitor.limit()) {
                 Some(next) => {
-                    let suits = suits::<P, F, N>(tree, &prepared);
-                    return Some(Flight::<P, V> {
-                        number,
-                        ray,
-                        slabs,
-                        shear,
-                        suits,
-                        next,
-                        waiting: 0,
-                        visitor,
-                    });
+                    return Some(Flight::<P, V> { number, ray, slabs, shear, next, waiting: 0, visitor });
                 }
                 None => finish(number, visitor),
             }
@@ -84,25 +72,10 @@ pub(super) fn traverse_in_turns<
         for (slot, stack) in flights.iter_mut().zip(&mut stacks) {
             let Some(flight) = slot else { continue };
             let prepared = PreparedRay::of_parts(&flight.ray, flight.slabs, flight.shear);
-            let lanes = SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new::<F::Node, N>(
-                isa,
-                &flight.slabs,
-                flight.ray.t_max,
-            );
+            let ray: WideRay<'_, _, Row<P::Scalar, I, N>> =
+                WideRay::new::<P, F, N>(isa, tree, &prepared, &flight.ray, &flight.shear);
             let mut pending = Pending::new(stack, flight.waiting);
-            let visitor = &mut flight.visitor;
-            match step(
-                isa,
-                tree,
-                flight.next,
-                &prepared,
-                &flight.ray,
-                &lanes,
-                flight.suits,
-                &mut pending,
-                visitor,
-                &mut (),
-            ) {
+            match step(isa, tree, flight.next, &ray, &mut pending, &mut flight.visitor, &mut ()) {
                 Some(next) => {
                     F::prefetch(tree, next);
                     flight.next = next;

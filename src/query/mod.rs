@@ -54,11 +54,12 @@ pub trait Traverse<P: Intersect>: Layout<P> {
     #[doc(hidden)]
     const IS_WIDE: bool;
 
-    /// Shows `visitor` the primitives in leaves whose boxes the ray meets, until it breaks.
+    /// Shows `visitor` the primitives in leaves whose boxes the ray meets, until it breaks. Both are the same valid ray.
     #[doc(hidden)]
     fn traverse<I: Simd>(
         &self,
         isa: I,
+        prepared: &PreparedRay<P::Scalar>,
         ray: &Ray<P::Scalar>,
         visitor: &mut impl Visitor<P>,
         recorder: &mut impl Recorder,
@@ -77,7 +78,7 @@ pub trait Traverse<P: Intersect>: Layout<P> {
     ) {
         for (number, ray) in rays {
             let mut visitor = start(ray);
-            self.traverse(isa, ray, &mut visitor, &mut ());
+            self.traverse(isa, &ray.prepare(), ray, &mut visitor, &mut ());
             finish(number, visitor);
         }
     }

@@ -29,8 +29,8 @@ pub(super) struct SlabLanes<S, L> {
     origin: [L; 3],
     inv_near: [L; 3],
     inv_far: [L; 3],
-    /// Where in a node the near planes of each axis lie, and the far planes, in bytes.
-    places: [[usize; 2]; 3],
+    /// Which planes across each axis are the near ones: 0 for the minima, a row's length in bytes for the maxima.
+    first: [usize; 3],
     pub t_min: S,
     /// What is said above holds: inverses are finite, and neither t_min nor t_max has a minus sign. Later limits have none
     /// either, since no hit's t has (see `query::accept` and the packed leaves).
@@ -39,21 +39,16 @@ pub(super) struct SlabLanes<S, L> {
 
 impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
     #[inline(always)]
-    pub fn new<T: WideNode<S, N>, const N: usize>(isa: L::Isa, slabs: &Slabs<S>, t_max: S) -> Self {
+    pub fn new<T: WideNode<S, N>, const N: usize>(isa: L::Isa, slabs: &Slabs<S>, ray: &Ray<S>) -> Self {
         let splat = |[x, y, z]: [S; 3]| [L::splat(isa, x), L::splat(isa, y), L::splat(isa, z)];
-        let [x, y, z] = slabs.negative;
-        let row = |axis: usize, is_max: bool| (2 * axis + usize::from(is_max)) * T::ROW;
-        let places = |axis: usize, is_max: bool| [row(axis, is_max), row(axis, !is_max)];
-        let [far_x, far_y, far_z] = slabs.inv_far.map(|inv| inv.abs() < S::INFINITY);
         Self {
             origin: splat(slabs.origin),
             inv_near: splat(slabs.inv_near),
             inv_far: splat(slabs.inv_far),
-            places: [places(0, x), places(1, y), places(2, z)],
+            first: slabs.negative.map(|is_max| usize::from(is_max) * T::ROW),
             // +0, whose bits are those of an integer.
             t_min: slabs.t_min + S::ZERO,
-            are_ordered_by_bits: L::orders_by_bits(isa)
-                && far_x & far_y & far_z & (slabs.t_min >= S::ZERO) & (t_max > S::ZERO),
+            are_ordered_by_bits: L::orders_by_bits(isa) && (slabs.is_ordinary || has_finite_ends(ray)),
         }
     }
 
@@ -94,10 +89,17 @@ impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
     /// How far from the origin the near planes and the far planes across an axis are.
     #[inline(always)]
     fn distances<const N: usize>(&self, node: &impl WideNode<S, N>, axis: usize) -> [L; 2] {
-        // SAFETY: the places of `new`.
-        let [first, last] = unsafe { node.planes::<L>(self.origin[0].isa(), axis, self.places[axis]) };
+        // SAFETY: one of three axes, and 0 or a row's length (`new`).
+        let [first, last] = unsafe { node.planes::<L>(self.origin[0].isa(), axis, self.first[axis]) };
         [first - self.origin[axis], last - self.origin[axis]]
     }
+}
+
+/// Whether bits order what the slabs of a ray that is not ordinary give.
+#[cold]
+#[inline(never)]
+fn has_finite_ends<S: Scalar>(ray: &Ray<S>) -> bool {
+    Slabs::new(ray).inv_far.iter().all(|inv| inv.is_finite()) && ray.t_min >= S::ZERO && ray.t_max > S::ZERO
 }
 
 /// The same for a ray that also looks behind its origin, where the padding has the other sign.

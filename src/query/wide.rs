@@ -16,10 +16,10 @@ use super::counters::Recorder;
 use super::pending::{Memory, Pending};
 use super::slab_lanes::SlabLanes;
 use super::{Traverse, Visitor, flights};
-use crate::geometry::{PreparedRay, Ray, Scalar};
+use crate::geometry::{PreparedRay, Ray, Scalar, Shear};
 use crate::layout::{Form, Outline, Reference, WideNode, WideTree};
 use crate::primitive::{Found, Intersect, LEAF_WIDTH, Leaf, Operands};
-use crate::simd::{Count, Lanes, Width};
+use crate::simd::{Count, Kept, Lanes, Width};
 use core::ops::ControlFlow;
 use fearless_simd::Simd;
 
@@ -33,23 +33,19 @@ where
     fn traverse<I: Simd>(
         &self,
         isa: I,
+        prepared: &PreparedRay<P::Scalar>,
         ray: &Ray<P::Scalar>,
         visitor: &mut impl Visitor<P>,
         recorder: &mut impl Recorder,
     ) {
-        let prepared = ray.prepare();
-        let Some(mut next) = first(self, &prepared, visitor.limit()) else { return };
-        let suits = suits::<P, F, N>(self, &prepared);
-        let lanes = SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new::<F::Node, N>(
-            isa,
-            &prepared.slabs,
-            ray.t_max,
-        );
+        let Some(mut next) = first(self, prepared, visitor.limit()) else { return };
+        // A copy: all of the prepared ray would lie in memory else.
+        let shear = prepared.shear;
+        let ray: WideRay<'_, _, Row<P::Scalar, I, N>> =
+            WideRay::new::<P, F, N>(isa, self, prepared, ray, &shear);
         let mut memory = Memory::new();
         let mut pending = Pending::new(&mut memory, 0);
-        while let Some(place) =
-            step(isa, self, next, &prepared, ray, &lanes, suits, &mut pending, visitor, recorder)
-        {
+        while let Some(place) = step(isa, self, next, &ray, &mut pending, visitor, recorder) {
             next = place;
         }
     }
@@ -63,23 +59,19 @@ where
         ahead: &mut Ahead<P, Reference>,
         recorder: &mut impl Recorder,
     ) {
-        let prepared = *ray;
-        let suits = suits::<P, F, N>(self, &prepared);
-        let lanes = SlabLanes::<_, <Count<N> as Width>::Lanes<P::Scalar, I>>::new::<F::Node, N>(
-            isa,
-            &prepared.slabs,
-            ray.t_max,
-        );
+        let (prepared, shear) = (*ray, ray.shear);
+        let ray: WideRay<'_, _, Row<P::Scalar, I, N>> =
+            WideRay::new::<P, F, N>(isa, self, &prepared, ray, &shear);
         while let Some(place) = ahead.next_box() {
             if place.is_leaf() {
                 recorder.leaf();
                 // It goes on to the leaf's end whatever it finds.
                 let visitor = &mut ahead.visitor(primitives, prepared.t_max);
-                let _ = leaf::<P, _, _, I, F, N>(isa, self, place, &prepared, ray, suits, visitor, recorder);
+                let _ = leaf::<P, _, _, _, F, N>(isa, self, place, &ray, visitor, recorder);
             } else {
                 recorder.node();
                 let node = self.node(place);
-                let (near, mut met) = lanes.enter(node, ray, prepared.t_max);
+                let (near, mut met) = ray.lanes.enter(node, ray.ray, prepared.t_max);
                 let mut entries = Distances([P::Scalar::ZERO; 16]);
                 near.store(&mut entries.0);
                 while met != 0 {
@@ -127,55 +119,65 @@ pub(super) fn first<S: Scalar, F: Form<S, N>, const N: usize>(
     Some(root)
 }
 
-/// Whether the leaves' tests in lanes are good for this ray.
-#[inline(always)]
-pub(super) fn suits<P: Intersect, F: Form<P::Scalar, N>, const N: usize>(
-    tree: &WideTree<P::Scalar, N, F>,
-    ray: &PreparedRay<P::Scalar>,
-) -> bool {
-    tree.is_ordinary() && <P::Leaf as Leaf<_, _>>::suits(ray)
+/// A scalar for each child of a node.
+pub(super) type Row<S, I, const N: usize> = <Count<N> as Width>::Lanes<S, I>;
+
+/// A ray as the loops have it.
+pub(super) struct WideRay<'r, S: Scalar, L> {
+    ray: &'r Ray<S>,
+    prepared: &'r PreparedRay<S>,
+    /// For leaves.
+    shear: Kept<'r, Shear<S>>,
+    /// For nodes.
+    lanes: SlabLanes<S, L>,
+    /// The leaves' tests in lanes are good for it.
+    suits: bool,
+}
+
+impl<'r, S: Scalar, L: Lanes<S>> WideRay<'r, S, L> {
+    /// Both are the same ray, and the shear is its.
+    #[inline(always)]
+    pub fn new<P: Intersect<Scalar = S>, F: Form<S, N>, const N: usize>(
+        isa: L::Isa,
+        tree: &WideTree<S, N, F>,
+        prepared: &'r PreparedRay<S>,
+        ray: &'r Ray<S>,
+        shear: &'r Shear<S>,
+    ) -> Self {
+        let lanes = SlabLanes::new::<F::Node, N>(isa, &prepared.slabs, ray);
+        let suits = tree.is_ordinary() && <P::Leaf as Leaf<_, _>>::suits(prepared);
+        Self { ray, prepared, shear: Kept::new(shear), lanes, suits }
+    }
 }
 
 /// Visits a place, and tells which is next, if any is.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "what a loop has in registers")]
-pub(super) fn step<
-    P: Intersect,
-    L,
-    I: Simd,
-    V: Visitor<P>,
-    R: Recorder,
-    F: Form<P::Scalar, N>,
-    const N: usize,
->(
-    isa: I,
+pub(super) fn step<P: Intersect, L, V: Visitor<P>, R: Recorder, F: Form<P::Scalar, N>, const N: usize>(
+    isa: L::Isa,
     tree: &WideTree<P::Scalar, N, F>,
     place: Reference,
-    prepared: &PreparedRay<P::Scalar>,
-    ray: &Ray<P::Scalar>,
-    lanes: &SlabLanes<P::Scalar, L>,
-    suits: bool,
+    ray: &WideRay<'_, P::Scalar, L>,
     pending: &mut Pending<'_, P::Scalar>,
     visitor: &mut V,
     recorder: &mut R,
 ) -> Option<Reference>
 where
-    L: Lanes<P::Scalar, Isa = I>,
+    L: Lanes<P::Scalar>,
 {
     if place.is_leaf() {
         recorder.leaf();
-        if leaf::<P, V, R, I, F, N>(isa, tree, place, prepared, ray, suits, visitor, recorder).is_break() {
+        if leaf::<P, _, _, _, F, N>(isa, tree, place, ray, visitor, recorder).is_break() {
             return None;
         }
     } else {
         recorder.node();
         let node = tree.node(place);
-        let (near, met) = lanes.enter(node, ray, visitor.limit());
+        let (near, met) = ray.lanes.enter(node, ray.ray, visitor.limit());
         if met != 0 {
             return Some(if met & (met - 1) == 0 {
                 node.children()[met.trailing_zeros() as usize % N]
             } else if V::IN_ORDER {
-                nearest(node, near, met, lanes.t_min, pending)
+                nearest(node, near, met, ray.lanes.t_min, pending)
             } else {
                 last::<_, L, N>(isa, node, met, pending)
             });
@@ -185,17 +187,17 @@ where
 }
 
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "what a loop has in registers")]
-fn leaf<P: Intersect, V: Visitor<P>, R: Recorder, I: Simd, F: Form<P::Scalar, N>, const N: usize>(
-    isa: I,
+fn leaf<P: Intersect, L, V: Visitor<P>, R: Recorder, F: Form<P::Scalar, N>, const N: usize>(
+    isa: L::Isa,
     tree: &WideTree<P::Scalar, N, F>,
     leaf: Reference,
-    prepared: &PreparedRay<P::Scalar>,
-    ray: &Ray<P::Scalar>,
-    suits: bool,
+    ray: &WideRay<'_, P::Scalar, L>,
     visitor: &mut V,
     recorder: &mut R,
-) -> ControlFlow<()> {
+) -> ControlFlow<()>
+where
+    L: Lanes<P::Scalar>,
+{
     let operands = <P::Leaf as Leaf<P::Scalar, P::Payload>>::OPERANDS;
     let indices = F::indices(tree, leaf, operands);
     for (lane, &index) in indices.iter().enumerate() {
@@ -208,15 +210,18 @@ fn leaf<P: Intersect, V: Visitor<P>, R: Recorder, I: Simd, F: Form<P::Scalar, N>
             if !F::has(leaf, lane, index) {
                 break;
             }
-            visitor.primitive(index, prepared)?;
+            visitor.primitive(index, ray.prepared)?;
         }
         return ControlFlow::Continue(());
     }
     let mut room = F::room();
     let rows = F::rows(tree, leaf, visitor.primitives(), &mut room);
-    let operands = Operands::<_, <Count<8> as Width>::Lanes<P::Scalar, I>>::new(isa, rows);
-    let found = if suits {
-        P::Leaf::test(&operands, prepared, visitor.limit())
+    let operands = Operands::<_, <Count<8> as Width>::Lanes<P::Scalar, L::Isa>>::new(isa, rows);
+    let found = if ray.suits {
+        // Not the axes: those that were kept might be any.
+        let shear = Shear { axes: ray.prepared.shear.axes, ..*ray.shear.get() };
+        let prepared = PreparedRay::of_parts(ray.prepared, ray.prepared.slabs, shear);
+        P::Leaf::test(&operands, &prepared, visitor.limit())
     } else {
         let lanes = indices.iter().enumerate().rev();
         let all = lanes.fold(0, |all, (lane, &index)| all << 1 | u32::from(F::has(leaf, lane, index)));
@@ -230,7 +235,7 @@ fn leaf<P: Intersect, V: Visitor<P>, R: Recorder, I: Simd, F: Form<P::Scalar, N>
         return ControlFlow::Continue(());
     }
     if <P::Leaf as Leaf<_, _>>::SETTLES {
-        let (told, flow) = ask_anew(*visitor, unsure, indices, ray);
+        let (told, flow) = ask_anew(*visitor, unsure, indices, ray.ray);
         *visitor = told;
         return flow;
     }
@@ -238,7 +243,7 @@ fn leaf<P: Intersect, V: Visitor<P>, R: Recorder, I: Simd, F: Form<P::Scalar, N>
         let lane = next_lane(&mut unsure) % LEAF_WIDTH;
         // The lanes of a user's leaf may be any.
         if F::has(leaf, lane, indices[lane]) {
-            visitor.primitive(indices[lane], prepared)?;
+            visitor.primitive(indices[lane], ray.prepared)?;
         }
     }
     ControlFlow::Continue(())

@@ -11,6 +11,7 @@ mod backend;
 mod lanes;
 mod pairs;
 mod prefetch;
+mod read;
 
 pub use backend::InstructionSet;
 pub(crate) use backend::{Backend, Kernel};
@@ -18,3 +19,4 @@ pub(crate) use lanes::{Count, Pair, Width, Window};
 pub use lanes::{Halves, Lanes};
 pub use pairs::Lanes4;
 pub(crate) use prefetch::{prefetch, prefetch_ahead};
+pub(crate) use read::{Kept, read_each};

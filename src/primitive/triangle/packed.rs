@@ -53,7 +53,7 @@ impl<S: Scalar, const LOOKS_TWICE: bool> Leaf<S, Barycentrics<S>> for TriangleLe
 #[inline(always)]
 fn is_ordinary<S: Scalar>(ray: &PreparedRay<S>) -> bool {
     let [x, y, z] = ray.origin;
-    ray.t_min >= S::ZERO && max(max(x.abs(), y.abs()), z.abs()) < S::LARGE_AREA
+    ray.slabs.is_ordinary || (ray.t_min >= S::ZERO && max(max(x.abs(), y.abs()), z.abs()) < S::LARGE_AREA)
 }
 
 /// The leaf of [`Precise`](super::Precise) triangles: nine coordinates each, by which those are left out whose sides
