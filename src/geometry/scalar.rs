@@ -1,6 +1,6 @@
 //! The two scalars, `f32` and `f64`, behind one sealed trait.
 
-use crate::simd::{Halves, Lanes, Pair};
+use crate::simd::{Halves, Lanes, Pair, Twice};
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 use fearless_simd::{Simd, f32x4, f32x8, f32x16, f64x4, f64x8};
@@ -65,6 +65,9 @@ pub trait Scalar:
     type Times8<I: Simd>: Lanes<Self, Isa = I> + Halves<Self::Times4<I>>;
     #[doc(hidden)]
     type Times16<I: Simd>: Lanes<Self, Isa = I>;
+    /// Eight, to compute with beside sixteen.
+    #[doc(hidden)]
+    type Times8Of16<I: Simd>: Lanes<Self, Isa = I>;
     /// The scalar in which products and differences of this one's lose little or nothing: `f64`.
     #[doc(hidden)]
     type Wide: Scalar;
@@ -150,7 +153,7 @@ mod sealed {
 }
 
 macro_rules! scalar {
-    ($scalar:ident, $vec3:ty, $lanes4:ty, [$times4:ty, $times8:ty, $times16:ty], $bits:ident, $signed:ident, $libm_sqrt:ident, $libm_fma:ident, $large_area:expr, $large_volume:expr) => {
+    ($scalar:ident, $vec3:ty, $lanes4:ty, [$times4:ty, $times8:ty, $times16:ty, $times8_of_16:ty], $bits:ident, $signed:ident, $libm_sqrt:ident, $libm_fma:ident, $large_area:expr, $large_volume:expr) => {
         impl Scalar for $scalar {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -167,6 +170,7 @@ macro_rules! scalar {
             type Times4<I: Simd> = $times4;
             type Times8<I: Simd> = $times8;
             type Times16<I: Simd> = $times16;
+            type Times8Of16<I: Simd> = $times8_of_16;
             type Wide = f64;
 
             #[inline(always)]
@@ -291,7 +295,7 @@ scalar!(
     f32,
     glam::Vec3A,
     glam::Vec4,
-    [f32x4<I>, f32x8<I>, f32x16<I>],
+    [f32x4<I>, f32x8<I>, f32x16<I>, Twice<I>],
     u32,
     i32,
     sqrtf,
@@ -303,7 +307,7 @@ scalar!(
     f64,
     glam::DVec3,
     [f64; 4],
-    [f64x4<I>, f64x8<I>, Pair<f64x8<I>>],
+    [f64x4<I>, f64x8<I>, Pair<f64x8<I>>, f64x8<I>],
     u64,
     i64,
     sqrt,

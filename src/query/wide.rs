@@ -163,6 +163,7 @@ pub(super) fn step<P: Intersect, L, V: Visitor<P>, R: Recorder, F: Form<P::Scala
 ) -> Option<Reference>
 where
     L: Lanes<P::Scalar>,
+    Count<N>: Width,
 {
     if place.is_leaf() {
         recorder.leaf();
@@ -197,6 +198,7 @@ fn leaf<P: Intersect, L, V: Visitor<P>, R: Recorder, F: Form<P::Scalar, N>, cons
 ) -> ControlFlow<()>
 where
     L: Lanes<P::Scalar>,
+    Count<N>: Width,
 {
     let operands = <P::Leaf as Leaf<P::Scalar, P::Payload>>::OPERANDS;
     let indices = F::indices(tree, leaf, operands);
@@ -216,7 +218,7 @@ where
     }
     let mut room = F::room();
     let rows = F::rows(tree, leaf, visitor.primitives(), &mut room);
-    let operands = Operands::<_, <Count<8> as Width>::Lanes<P::Scalar, L::Isa>>::new(isa, rows);
+    let operands = Operands::<_, <Count<N> as Width>::Leaf<P::Scalar, L::Isa>>::new(isa, rows);
     let found = if ray.suits {
         // Not the axes: those that were kept might be any.
         let shear = Shear { axes: ray.prepared.shear.axes, ..*ray.shear.get() };

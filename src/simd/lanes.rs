@@ -402,20 +402,26 @@ impl<S: Scalar, L: Lanes<S>> Lanes<S> for Pair<L> {
     }
 }
 
-/// The lanes for a number of scalars: 4, 8 or 16.
+/// The lanes of a tree whose nodes have so many children: 4, 8 or 16.
 pub trait Width: 'static {
+    /// A scalar for each child of a node.
     type Lanes<S: Scalar, I: Simd>: Lanes<S, Isa = I>;
+    /// A scalar for each primitive of a leaf.
+    type Leaf<S: Scalar, I: Simd>: Lanes<S, Isa = I>;
 }
 
-/// A number of lanes.
+/// A number of children.
 pub struct Count<const N: usize>;
 
 impl Width for Count<4> {
     type Lanes<S: Scalar, I: Simd> = S::Times4<I>;
+    type Leaf<S: Scalar, I: Simd> = S::Times8<I>;
 }
 impl Width for Count<8> {
     type Lanes<S: Scalar, I: Simd> = S::Times8<I>;
+    type Leaf<S: Scalar, I: Simd> = S::Times8<I>;
 }
 impl Width for Count<16> {
     type Lanes<S: Scalar, I: Simd> = S::Times16<I>;
+    type Leaf<S: Scalar, I: Simd> = S::Times8Of16<I>;
 }

@@ -12,6 +12,7 @@ mod lanes;
 mod pairs;
 mod prefetch;
 mod read;
+mod twice;
 
 pub use backend::InstructionSet;
 pub(crate) use backend::{Backend, Kernel};
@@ -20,3 +21,4 @@ pub use lanes::{Halves, Lanes};
 pub use pairs::Lanes4;
 pub(crate) use prefetch::{prefetch, prefetch_ahead};
 pub(crate) use read::{Kept, read_each};
+pub(crate) use twice::Twice;
