@@ -156,7 +156,16 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> fmt::Debug for WideTree<S, N, F> 
     }
 }
 
+/// In bytes: a tree that is larger is beyond the caches that answer at once.
+const LARGE: usize = 4 << 20;
+
 impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
+    /// Whether rays wait for memory, so that it pays to fetch ahead what they will need.
+    #[inline(always)]
+    pub(crate) fn is_large(&self) -> bool {
+        self.blocks.bytes() > LARGE
+    }
+
     /// See [`Leaf::suits`](crate::Leaf).
     #[inline(always)]
     pub(crate) fn is_ordinary(&self) -> bool {

@@ -73,7 +73,7 @@ pub(super) fn traverse_in_turns<
             let Some(flight) = slot else { continue };
             let prepared = PreparedRay::of_parts(&flight.ray, flight.slabs, flight.shear);
             let ray: WideRay<'_, _, Row<P::Scalar, I, N>> =
-                WideRay::new::<P, F, N>(isa, tree, &prepared, &flight.ray, &flight.shear);
+                WideRay::new::<P, F, N>(isa, tree, &prepared, &flight.ray, &flight.shear).in_turns();
             let mut pending = Pending::new(stack, flight.waiting);
             match step(isa, tree, flight.next, &ray, &mut pending, &mut flight.visitor, &mut ()) {
                 Some(next) => {

@@ -94,6 +94,14 @@ impl<'m, S: Copy + PartialOrd> Pending<'m, S> {
         Some(unsafe { self.memory.references.get_unchecked(self.len).assume_init() })
     }
 
+    /// What [`pop`](Self::pop) would answer.
+    #[inline(always)]
+    pub fn top(&self) -> Option<Reference> {
+        let place = self.len.checked_sub(1)?;
+        // SAFETY: it is below `len`.
+        Some(unsafe { self.memory.references.get_unchecked(place).assume_init() })
+    }
+
     /// The last one that begins at or before `limit`; those after it are dropped.
     #[inline(always)]
     pub fn pop_before(&mut self, limit: S) -> Option<Reference> {

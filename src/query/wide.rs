@@ -132,6 +132,8 @@ pub(super) struct WideRay<'r, S: Scalar, L> {
     lanes: SlabLanes<S, L>,
     /// The leaves' tests in lanes are good for it.
     suits: bool,
+    /// The tree is large.
+    fetches: bool,
 }
 
 impl<'r, S: Scalar, L: Lanes<S>> WideRay<'r, S, L> {
@@ -146,7 +148,23 @@ impl<'r, S: Scalar, L: Lanes<S>> WideRay<'r, S, L> {
     ) -> Self {
         let lanes = SlabLanes::new::<F::Node, N>(isa, &prepared.slabs, ray);
         let suits = tree.is_ordinary() && <P::Leaf as Leaf<_, _>>::suits(prepared);
-        Self { ray, prepared, shear: Kept::new(shear), lanes, suits }
+        Self { ray, prepared, shear: Kept::new(shear), lanes, suits, fetches: tree.is_large() }
+    }
+
+    /// For one of several rays, which have time for what they need to come.
+    #[inline(always)]
+    pub fn in_turns(self) -> Self {
+        Self { fetches: false, ..self }
+    }
+
+    /// Asks for what will be popped after the next place, unless that brings more: its memory has a step's time to come.
+    #[inline(always)]
+    fn fetch_top<F: Form<S, N>, const N: usize>(&self, tree: &WideTree<S, N, F>, pending: &Pending<'_, S>) {
+        if self.fetches
+            && let Some(place) = pending.top()
+        {
+            F::prefetch(tree, place);
+        }
     }
 }
 
@@ -175,16 +193,21 @@ where
         let node = tree.node(place);
         let (near, met) = ray.lanes.enter(node, ray.ray, visitor.limit());
         if met != 0 {
-            return Some(if met & (met - 1) == 0 {
-                node.children()[met.trailing_zeros() as usize % N]
-            } else if V::IN_ORDER {
+            if met & (met - 1) == 0 {
+                return Some(node.children()[met.trailing_zeros() as usize % N]);
+            }
+            let next = if V::IN_ORDER {
                 nearest(node, near, met, ray.lanes.t_min, pending)
             } else {
                 last::<_, L, N>(isa, node, met, pending)
-            });
+            };
+            ray.fetch_top(tree, pending);
+            return Some(next);
         }
     }
-    if V::IN_ORDER { pending.pop_before(visitor.limit()) } else { pending.pop() }
+    let next = if V::IN_ORDER { pending.pop_before(visitor.limit()) } else { pending.pop() };
+    ray.fetch_top(tree, pending);
+    next
 }
 
 #[inline(always)]
