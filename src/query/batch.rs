@@ -29,6 +29,10 @@ const TRIALS: [bool; 4] = [false, true, true, false];
 /// Fewer rays are traced one after another: trials would be most of them.
 const WORTH_A_TRIAL: usize = 8 * TRIAL;
 
+/// Turns have to take less than this share of the time, for a clock is not exact: where they are level, chance would
+/// decide, and what it costs to be wrong is more than what it gains to be right.
+const WORTH_TURNS: f64 = 0.95;
+
 /// Rays of a stretch, at first and at most.
 const STRETCH: [usize; 2] = [16 * 1024, 256 * 1024];
 
@@ -72,7 +76,7 @@ pub(crate) fn ask_all<'a, P: Intersect, L: Traverse<P>, Q: Question<'a, P>>(
             ask(TRIAL, in_turns);
             seconds[usize::from(in_turns)] += clock.seconds();
         }
-        let in_turns = seconds[1] < seconds[0];
+        let in_turns = seconds[1] < WORTH_TURNS * seconds[0];
         stretch = if was_in_turns == Some(in_turns) { longest.min(2 * stretch) } else { shortest };
         was_in_turns = Some(in_turns);
         if ask(stretch, in_turns) == 0 {

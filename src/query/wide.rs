@@ -157,7 +157,9 @@ impl<'r, S: Scalar, L: Lanes<S>> WideRay<'r, S, L> {
         Self { fetches: false, ..self }
     }
 
-    /// Asks for what will be popped after the next place, unless that brings more: its memory has a step's time to come.
+    /// Asks for what will be popped after the next place, unless that brings more: it has a step's time to come. On an Intel Xeon
+    /// closest hits were 1.00 to 1.05 times as quick (random rays 1.04 to 1.14), any hits 0.98 to 1.05, in trees of 13 to 17 MB. Of
+    /// one that the cache holds it is as much slower, on a Zen 5 machine.
     #[inline(always)]
     fn fetch_top<F: Form<S, N>, const N: usize>(&self, tree: &WideTree<S, N, F>, pending: &Pending<'_, S>) {
         if self.fetches
