@@ -315,6 +315,16 @@ impl<M: Not<Output = M>> Not for Pair<M> {
     }
 }
 
+/// Methods that do the same to both.
+macro_rules! in_both {
+    ($($method:ident($($other:ident),*) -> $result:ty,)*) => {
+        $(#[inline(always)]
+        fn $method(self, $($other: Self),*) -> $result {
+            Pair(self.0.$method($($other.0),*), self.1.$method($($other.1),*))
+        })*
+    };
+}
+
 impl<S: Scalar, L: Lanes<S>> Lanes<S> for Pair<L> {
     const COUNT: usize = 2 * L::COUNT;
     type Mask = Pair<L::Mask>;
@@ -345,56 +355,28 @@ impl<S: Scalar, L: Lanes<S>> Lanes<S> for Pair<L> {
         if lane < L::COUNT { self.0.lane(lane) } else { self.1.lane(lane - L::COUNT) }
     }
     #[inline(always)]
-    fn mul_add(self, factor: Self, more: Self) -> Self {
-        Self(self.0.mul_add(factor.0, more.0), self.1.mul_add(factor.1, more.1))
-    }
-    #[inline(always)]
     fn orders_by_bits(isa: L::Isa) -> bool {
         L::orders_by_bits(isa)
-    }
-    #[inline(always)]
-    fn later(self, other: Self) -> Self {
-        Self(self.0.later(other.0), self.1.later(other.1))
-    }
-    #[inline(always)]
-    fn earlier(self, other: Self) -> Self {
-        Self(self.0.earlier(other.0), self.1.earlier(other.1))
-    }
-    #[inline(always)]
-    fn not_after(self, other: Self) -> Self::Mask {
-        Pair(self.0.not_after(other.0), self.1.not_after(other.1))
     }
     #[inline(always)]
     fn isa(self) -> L::Isa {
         self.0.isa()
     }
     #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        Self(self.0.min(other.0), self.1.min(other.1))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self(self.0.max(other.0), self.1.max(other.1))
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.abs(), self.1.abs())
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.sqrt(), self.1.sqrt())
-    }
-    #[inline(always)]
     fn where_else(self, mask: Self::Mask, other: Self) -> Self {
         Self(self.0.where_else(mask.0, other.0), self.1.where_else(mask.1, other.1))
     }
-    #[inline(always)]
-    fn lt(self, other: Self) -> Self::Mask {
-        Pair(self.0.lt(other.0), self.1.lt(other.1))
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> Self::Mask {
-        Pair(self.0.le(other.0), self.1.le(other.1))
+    in_both! {
+        mul_add(factor, more) -> Self,
+        later(other) -> Self,
+        earlier(other) -> Self,
+        min(other) -> Self,
+        max(other) -> Self,
+        abs() -> Self,
+        sqrt() -> Self,
+        not_after(other) -> Self::Mask,
+        lt(other) -> Self::Mask,
+        le(other) -> Self::Mask,
     }
     #[inline(always)]
     fn bits(mask: Self::Mask) -> u32 {

@@ -181,3 +181,56 @@ impl<I: Simd> Lanes<f32> for Twice<I> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{Backend, InstructionSet, Kernel};
+    use alloc::vec::Vec;
+
+    /// All operations on two rows: numbers in lanes, and bits of masks.
+    struct All([f32; 8], [f32; 8]);
+
+    fn results<L: Lanes<f32>>(isa: L::Isa, a: &[f32; 8], b: &[f32; 8]) -> (Vec<f32>, Vec<u32>) {
+        assert_eq!(L::COUNT, 8);
+        // SAFETY: eight scalars each.
+        let (a, b) = unsafe { (L::load(isa, a.as_ptr()), L::load(isa, b.as_ptr())) };
+        let (less, no_more) = (a.lt(b), a.le(b));
+        let chosen = a.where_else(less | !no_more, b);
+        let numbers =
+            [a + b, a - b, a * b, a / b, a.min(b), a.max(b), a.abs(), b.sqrt(), chosen, a.mul_add(b, a)];
+        let masks = [less, no_more, !less, less & no_more, less | no_more];
+        let lanes = numbers.into_iter().flat_map(|lanes| {
+            let mut stored = [0.0; 8];
+            lanes.store(&mut stored);
+            assert!((0..8).all(|k| lanes.lane(k).to_bits() == stored[k].to_bits()));
+            stored
+        });
+        (lanes.collect(), masks.map(L::bits).to_vec())
+    }
+
+    impl Kernel for All {
+        const IS_WIDE: bool = true;
+        type Output = [(Vec<f32>, Vec<u32>); 2];
+
+        #[inline(always)]
+        fn run<I: Simd>(self, isa: I) -> Self::Output {
+            [results::<Twice<I>>(isa, &self.0, &self.1), results::<f32x8<I>>(isa, &self.0, &self.1)]
+        }
+    }
+
+    #[test]
+    fn the_same_bits_as_once_on_every_instruction_set() {
+        let values = [0.0f32, -0.0, 1.5, -2.25, f32::NAN, f32::INFINITY, 1e-45, -f32::MAX];
+        for backend in InstructionSet::available().filter_map(Backend::of) {
+            for turn in 0..8 {
+                let others = core::array::from_fn(|lane| values[(lane + turn) % 8]);
+                let [(twice, twice_masks), (once, once_masks)] = backend.run(All(values, others));
+                // The payload of a NaN is nobody's promise.
+                let bits = |x: &f32| if x.is_nan() { u32::MAX } else { x.to_bits() };
+                assert!(twice.iter().map(bits).eq(once.iter().map(bits)), "{backend:?} {twice:?} {once:?}");
+                assert_eq!(twice_masks, once_masks, "{backend:?}");
+            }
+        }
+    }
+}
