@@ -128,7 +128,7 @@ impl<S: Scalar> Ray<S> {
 
     /// Whether nothing about the ray is special, as for most: it is valid, looks ahead of its origin and nowhere else,
     /// its direction has no component zero or so small, or large, that the inverse would not be of full precision, and
-    /// nothing is so large that a product of two would overflow. One question without branches in place of several.
+    /// its coordinates are below `Scalar::LARGE_AREA`. One question without branches in place of several.
     #[inline(always)]
     pub(crate) fn is_ordinary(&self) -> bool {
         let ([ox, oy, oz], [dx, dy, dz]) = (self.origin, self.direction);

@@ -92,6 +92,12 @@ impl Blocks {
         self.words.capacity() * size_of::<Word>()
     }
 
+    /// Bytes of the lines.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.lines * LINE
+    }
+
     /// All lines' words, to be compared.
     pub fn words(&self) -> &[Word] {
         &self.words[self.first..][..self.lines * WORDS]

@@ -62,7 +62,7 @@ pub trait Form<S: Scalar, const N: usize>: Clone + PartialEq + Send + Sync + 'st
 pub unsafe trait Node<S: Scalar, const N: usize>: Copy + Send + Sync {
     /// Where nodes begin.
     const ALIGN: usize;
-    /// Bytes from one row of planes to the next, a power of two; by axis, minima, then maxima.
+    /// Bytes from one row of planes to the next; by axis, minima, then maxima.
     const ROW: usize;
 
     /// With these children in the lowest lanes.
@@ -73,11 +73,11 @@ pub unsafe trait Node<S: Scalar, const N: usize>: Copy + Send + Sync {
     /// Bits of the lanes in which there may be children: no ray meets the boxes in others of them.
     fn lanes(&self) -> u32;
 
-    /// The two rows of planes across an axis, that of the minima first if `first` is 0, that of the maxima if it is
+    /// The two rows of planes across an axis, the minima before the maxima if `first` is 0, after them if it is
     /// [`ROW`](Self::ROW).
     ///
     /// # Safety
-    /// There is no other `first`, and no other `axis` than 0, 1 and 2.
+    /// `first` is 0 or [`ROW`](Self::ROW), `axis` is 0, 1 or 2.
     unsafe fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, first: usize) -> [L; 2];
 
     /// The box and the place of a child; none if there is none in this lane.

@@ -101,7 +101,7 @@ impl<S: Scalar> Leaf<S, ()> for SphereLeaf {
     /// The padding of boxes has the other sign behind the origin.
     #[inline(always)]
     fn suits(ray: &PreparedRay<S>) -> bool {
-        ray.slabs.is_ordinary || ray.t_min >= S::ZERO
+        ray.t_min >= S::ZERO
     }
 
     #[inline(always)]

@@ -54,7 +54,8 @@ pub trait Traverse<P: Intersect>: Layout<P> {
     #[doc(hidden)]
     const IS_WIDE: bool;
 
-    /// Shows `visitor` the primitives in leaves whose boxes the ray meets, until it breaks. Both are the same valid ray.
+    /// Shows `visitor` the primitives in leaves whose boxes the ray meets, until it breaks. `prepared` and `ray` are the same
+    /// valid ray.
     #[doc(hidden)]
     fn traverse<I: Simd>(
         &self,

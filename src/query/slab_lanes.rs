@@ -29,8 +29,8 @@ pub(super) struct SlabLanes<S, L> {
     origin: [L; 3],
     inv_near: [L; 3],
     inv_far: [L; 3],
-    /// Which planes across each axis are the near ones: 0 for the minima, a row's length in bytes for the maxima.
-    first: [usize; 3],
+    /// On which axes the near planes are the maxima.
+    negative: [bool; 3],
     pub t_min: S,
     /// What is said above holds: inverses are finite, and neither t_min nor t_max has a minus sign. Later limits have none
     /// either, since no hit's t has (see `query::accept` and the packed leaves).
@@ -39,16 +39,16 @@ pub(super) struct SlabLanes<S, L> {
 
 impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
     #[inline(always)]
-    pub fn new<T: WideNode<S, N>, const N: usize>(isa: L::Isa, slabs: &Slabs<S>, ray: &Ray<S>) -> Self {
+    pub fn new(isa: L::Isa, slabs: &Slabs<S>, ray: &Ray<S>) -> Self {
         let splat = |[x, y, z]: [S; 3]| [L::splat(isa, x), L::splat(isa, y), L::splat(isa, z)];
         Self {
             origin: splat(slabs.origin),
             inv_near: splat(slabs.inv_near),
             inv_far: splat(slabs.inv_far),
-            first: slabs.negative.map(|is_max| usize::from(is_max) * T::ROW),
+            negative: slabs.negative,
             // +0, whose bits are those of an integer.
             t_min: slabs.t_min + S::ZERO,
-            are_ordered_by_bits: L::orders_by_bits(isa) && (slabs.is_ordinary || has_finite_ends(ray)),
+            are_ordered_by_bits: L::orders_by_bits(isa) && (slabs.is_ordinary || is_ordered_by_bits(ray)),
         }
     }
 
@@ -88,17 +88,18 @@ impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
 
     /// How far from the origin the near planes and the far planes across an axis are.
     #[inline(always)]
-    fn distances<const N: usize>(&self, node: &impl WideNode<S, N>, axis: usize) -> [L; 2] {
-        // SAFETY: one of three axes, and 0 or a row's length (`new`).
-        let [first, last] = unsafe { node.planes::<L>(self.origin[0].isa(), axis, self.first[axis]) };
+    fn distances<T: WideNode<S, N>, const N: usize>(&self, node: &T, axis: usize) -> [L; 2] {
+        let first = usize::from(self.negative[axis]) * T::ROW;
+        // SAFETY: one of three axes, and 0 or a row's length.
+        let [first, last] = unsafe { node.planes::<L>(self.origin[0].isa(), axis, first) };
         [first - self.origin[axis], last - self.origin[axis]]
     }
 }
 
-/// Whether bits order what the slabs of a ray that is not ordinary give.
+/// The same of a ray that is not ordinary, for which it has to be found out.
 #[cold]
 #[inline(never)]
-fn has_finite_ends<S: Scalar>(ray: &Ray<S>) -> bool {
+fn is_ordered_by_bits<S: Scalar>(ray: &Ray<S>) -> bool {
     Slabs::new(ray).inv_far.iter().all(|inv| inv.is_finite()) && ray.t_min >= S::ZERO && ray.t_max > S::ZERO
 }
 

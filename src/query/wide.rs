@@ -137,7 +137,7 @@ pub(super) struct WideRay<'r, S: Scalar, L> {
 }
 
 impl<'r, S: Scalar, L: Lanes<S>> WideRay<'r, S, L> {
-    /// Both are the same ray, and the shear is its.
+    /// `prepared` and `ray` are the same ray, and `shear` is that ray's.
     #[inline(always)]
     pub fn new<P: Intersect<Scalar = S>, F: Form<S, N>, const N: usize>(
         isa: L::Isa,
@@ -146,7 +146,7 @@ impl<'r, S: Scalar, L: Lanes<S>> WideRay<'r, S, L> {
         ray: &'r Ray<S>,
         shear: &'r Shear<S>,
     ) -> Self {
-        let lanes = SlabLanes::new::<F::Node, N>(isa, &prepared.slabs, ray);
+        let lanes = SlabLanes::new(isa, &prepared.slabs, ray);
         let suits = tree.is_ordinary() && <P::Leaf as Leaf<_, _>>::suits(prepared);
         Self { ray, prepared, shear: Kept::new(shear), lanes, suits, fetches: tree.is_large() }
     }
@@ -157,9 +157,9 @@ impl<'r, S: Scalar, L: Lanes<S>> WideRay<'r, S, L> {
         Self { fetches: false, ..self }
     }
 
-    /// Asks for what will be popped after the next place, unless that brings more: it has a step's time to come. On an Intel Xeon
-    /// closest hits were 1.00 to 1.05 times as quick (random rays 1.04 to 1.14), any hits 0.98 to 1.05, in trees of 13 to 17 MB. Of
-    /// one that the cache holds it is as much slower, on a Zen 5 machine.
+    /// Asks for what will be popped next but for what the next step pushes: it has that step's time to come. On an Intel Xeon
+    /// closest hits were 1.00 to 1.05 times as quick (random rays 1.04 to 1.14), any hits 0.98 to 1.05, in trees of 13 to 17 MB. In
+    /// trees that the cache holds they are as much slower on a Zen 5 machine.
     #[inline(always)]
     fn fetch_top<F: Form<S, N>, const N: usize>(&self, tree: &WideTree<S, N, F>, pending: &Pending<'_, S>) {
         if self.fetches
@@ -245,10 +245,15 @@ where
     let rows = F::rows(tree, leaf, visitor.primitives(), &mut room);
     let operands = Operands::<_, <Count<N> as Width>::Leaf<P::Scalar, L::Isa>>::new(isa, rows);
     let found = if ray.suits {
-        // Not the axes: those that were kept might be any.
-        let shear = Shear { axes: ray.prepared.shear.axes, ..*ray.shear.get() };
-        let prepared = PreparedRay::of_parts(ray.prepared, ray.prepared.slabs, shear);
-        P::Leaf::test(&operands, &prepared, visitor.limit())
+        // Leaves of others may have a use for all of the ray.
+        if <P::Leaf as Leaf<_, _>>::SETTLES {
+            // But for the axes: of those that are read again a compiler does not know that they are three at most.
+            let shear = Shear { axes: ray.prepared.shear.axes, ..*ray.shear.get() };
+            let prepared = PreparedRay::of_parts(ray.prepared, ray.prepared.slabs, shear);
+            P::Leaf::test(&operands, &prepared, visitor.limit())
+        } else {
+            P::Leaf::test(&operands, ray.prepared, visitor.limit())
+        }
     } else {
         let lanes = indices.iter().enumerate().rev();
         let all = lanes.fold(0, |all, (lane, &index)| all << 1 | u32::from(F::has(leaf, lane, index)));

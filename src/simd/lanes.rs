@@ -8,12 +8,16 @@ use fearless_simd::{Bytes, ExtractToken, Select, Simd, SimdBase, SimdFloat, Simd
 /// Room for what a node puts on the stack.
 pub(crate) type Window<T> = [MaybeUninit<T>; 16];
 
-/// Several scalars side by side, to write tests of packed primitives with.
+pub(super) mod sealed {
+    pub trait Sealed {}
+}
+
+/// Several scalars side by side, to write tests of packed primitives with. Sealed.
 ///
 /// Each operation is done in every lane, by plain IEEE 754 arithmetic: a lane's bits are those of the same
 /// operations on one scalar.
 pub trait Lanes<S: Scalar>:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+    sealed::Sealed + Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// How many scalars.
     const COUNT: usize;
@@ -113,6 +117,8 @@ pub trait Lanes<S: Scalar>:
 
 macro_rules! lanes {
     ($scalar:ty, $lanes:ident, $mask:ident, $count:literal, { $($more:item)* }) => {
+        impl<I: Simd> sealed::Sealed for fearless_simd::$lanes<I> {}
+
         impl<I: Simd> Lanes<$scalar> for fearless_simd::$lanes<I> {
             const COUNT: usize = $count;
             type Mask = fearless_simd::$mask<I>;
@@ -324,6 +330,8 @@ macro_rules! in_both {
         })*
     };
 }
+
+impl<L> sealed::Sealed for Pair<L> {}
 
 impl<S: Scalar, L: Lanes<S>> Lanes<S> for Pair<L> {
     const COUNT: usize = 2 * L::COUNT;

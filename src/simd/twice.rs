@@ -1,18 +1,19 @@
 //! Eight scalars, computed with twice over where that is quicker.
 //!
-//! While vectors of 512 bits are under way, an Intel processor multiplies vectors of 256 bits in one place, and further ones of
+//! While vectors of 512 bits are under way, an Intel processor multiplies vectors of 256 bits in one place, but those of
 //! 512 in two. So with AVX-512 a leaf's eight primitives are tested in both halves of a vector that is as wide as a node's. Both
 //! hold the same, at no price: a row is spread over them on its way from the cache. On an Intel Xeon (Granite Rapids), means of a
-//! kitchen, dragon and sponza in two runs, closest hits of `Fast` triangles were 1.11, 1.07 and 1.05 times as quick (primary,
-//! diffuse, random), any hits 1.03 to 1.05, of `Watertight` ones 1.12, 1.10, 1.08 and 1.06 to 1.08.
+//! kitchen, dragon and sponza in two runs, closest hits of `Fast` triangles were 1.10, 1.07 and 1.07 times as quick (primary,
+//! diffuse, random), any hits 1.05, of `Watertight` ones 1.12, 1.10, 1.09 and 1.07.
 //!
 //! With other instruction sets all is done once.
 
 use super::Lanes;
+use super::lanes::sealed::Sealed;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 use fearless_simd::{ExtractToken, Simd, f32x8, f32x16, mask32x8, mask32x16};
 
-/// Of other instruction sets' only the first half counts.
+/// With other instruction sets than AVX-512 only the first half counts.
 #[derive(Clone, Copy)]
 pub struct Twice<I: Simd>(f32x16<I>);
 
@@ -92,7 +93,7 @@ impl<I: Simd> Not for TwiceMask<I> {
     }
 }
 
-/// Once: it takes as long as half of what is divided.
+/// In the first half alone: a division of 512 bits takes twice as long as one of 256.
 impl<I: Simd> Div for Twice<I> {
     type Output = Self;
     #[inline(always)]
@@ -100,6 +101,8 @@ impl<I: Simd> Div for Twice<I> {
         Self::both(self.half() / other.half())
     }
 }
+
+impl<I: Simd> Sealed for Twice<I> {}
 
 impl<I: Simd> Lanes<f32> for Twice<I> {
     const COUNT: usize = 8;

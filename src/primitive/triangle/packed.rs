@@ -24,7 +24,7 @@ impl<S: Scalar, const LOOKS_TWICE: bool> Leaf<S, Barycentrics<S>> for TriangleLe
 
     #[inline(always)]
     fn suits(ray: &PreparedRay<S>) -> bool {
-        is_ordinary(ray)
+        is_ahead_and_in_range(ray)
     }
 
     #[inline(always)]
@@ -48,11 +48,13 @@ impl<S: Scalar, const LOOKS_TWICE: bool> Leaf<S, Barycentrics<S>> for TriangleLe
     }
 }
 
-/// No sum or product of two coordinates in the frame overflows: only lanes without a triangle are NaN. And the ray does
-/// not look behind its origin, where the padding of boxes has the other sign.
+/// The ray does not look behind its origin, where the padding of boxes has the other sign, and no sum or product of two
+/// coordinates in the frame overflows: only lanes without a triangle are NaN. (In `f64` products overflow sooner, but
+/// then t is NaN in lanes as it is for a single triangle, and nothing is hit.)
 #[inline(always)]
-fn is_ordinary<S: Scalar>(ray: &PreparedRay<S>) -> bool {
+fn is_ahead_and_in_range<S: Scalar>(ray: &PreparedRay<S>) -> bool {
     let [x, y, z] = ray.origin;
+    // The first says all of it, and is known.
     ray.slabs.is_ordinary || (ray.t_min >= S::ZERO && max(max(x.abs(), y.abs()), z.abs()) < S::LARGE_AREA)
 }
 
@@ -66,7 +68,7 @@ impl Leaf<f32, Barycentrics> for PreciseLeaf {
 
     #[inline(always)]
     fn suits(ray: &PreparedRay) -> bool {
-        is_ordinary(ray)
+        is_ahead_and_in_range(ray)
     }
 
     /// A weight is a difference of two products of places in the frame, each of them off by less than 2 epsilon of what
