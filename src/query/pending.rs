@@ -89,9 +89,9 @@ impl<'m, S: Copy + PartialOrd> Pending<'m, S> {
     /// The last one.
     #[inline(always)]
     pub fn pop(&mut self) -> Option<Reference> {
-        self.len = self.len.checked_sub(1)?;
-        // SAFETY: it was below `len` just now.
-        Some(unsafe { self.memory.references.get_unchecked(self.len).assume_init() })
+        let top = self.top()?;
+        self.len -= 1;
+        Some(top)
     }
 
     /// What [`pop`](Self::pop) would answer.

@@ -96,7 +96,7 @@ impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
     }
 }
 
-/// The same of a ray that is not ordinary, for which it has to be found out.
+/// Whether bits order what the slabs of a ray give that is not ordinary.
 #[cold]
 #[inline(never)]
 fn is_ordered_by_bits<S: Scalar>(ray: &Ray<S>) -> bool {

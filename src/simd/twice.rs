@@ -50,47 +50,36 @@ impl<I: Simd> TwiceMask<I> {
     }
 }
 
-/// The same operation of one vector, or of its first half.
-macro_rules! operation {
-    ($result:ident, |$($operand:ident),+| $operation:expr) => {{
-        if is_one_vector(first!($($operand),+).0.token()) {
-            $(let $operand = $operand.0;)+
-            $result($operation)
-        } else {
-            $(let $operand = $operand.half();)+
-            $result::both($operation)
-        }
-    }};
-}
-
-macro_rules! first {
-    ($first:ident $(, $other:ident)*) => {
-        $first
-    };
-}
-
-macro_rules! operators {
-    ($($type:ident: $operator:ident $method:ident),*) => {
-        $(impl<I: Simd> $operator for $type<I> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                let one = self;
-                operation!($type, |one, other| one.$method(other))
+/// Methods that do the same to one vector, or to its first half.
+macro_rules! lanewise {
+    ($($trait:ident::$method:ident($($other:ident: $type:ty),*) -> $result:ident;)*) => {
+        $(#[inline(always)]
+        fn $method(self, $($other: $type),*) -> $result<I> {
+            if is_one_vector(self.0.token()) {
+                $result($trait::$method(self.0, $($other.0),*))
+            } else {
+                $result::both($trait::$method(self.half(), $($other.half()),*))
             }
         })*
     };
 }
 
-operators!(Twice: Add add, Twice: Sub sub, Twice: Mul mul, TwiceMask: BitAnd bitand, TwiceMask: BitOr bitor);
+macro_rules! operators {
+    ($($type:ident: $operator:ident::$method:ident($($other:ident)?);)*) => {
+        $(impl<I: Simd> $operator for $type<I> {
+            type Output = Self;
+            lanewise! { $operator::$method($($other: Self)?) -> $type; }
+        })*
+    };
+}
 
-impl<I: Simd> Not for TwiceMask<I> {
-    type Output = Self;
-    #[inline(always)]
-    fn not(self) -> Self {
-        let one = self;
-        operation!(TwiceMask, |one| !one)
-    }
+operators! {
+    Twice: Add::add(other);
+    Twice: Sub::sub(other);
+    Twice: Mul::mul(other);
+    TwiceMask: BitAnd::bitand(other);
+    TwiceMask: BitOr::bitor(other);
+    TwiceMask: Not::not();
 }
 
 /// In the first half alone: a division of 512 bits takes twice as long as one of 256.
@@ -132,48 +121,22 @@ impl<I: Simd> Lanes<f32> for Twice<I> {
         self.half().lane(lane)
     }
     #[inline(always)]
-    fn mul_add(self, factor: Self, more: Self) -> Self {
-        let one = self;
-        operation!(Twice, |one, factor, more| Lanes::mul_add(one, factor, more))
-    }
-    #[inline(always)]
     fn isa(self) -> I {
         self.0.token()
     }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        let one = self;
-        operation!(Twice, |one, other| Lanes::min(one, other))
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        let one = self;
-        operation!(Twice, |one, other| Lanes::max(one, other))
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        let one = self;
-        operation!(Twice, |one| Lanes::abs(one))
+    lanewise! {
+        Lanes::mul_add(factor: Self, more: Self) -> Twice;
+        Lanes::min(other: Self) -> Twice;
+        Lanes::max(other: Self) -> Twice;
+        Lanes::abs() -> Twice;
+        Lanes::where_else(mask: TwiceMask<I>, other: Self) -> Twice;
+        Lanes::lt(other: Self) -> TwiceMask;
+        Lanes::le(other: Self) -> TwiceMask;
     }
     /// Once, as quotients.
     #[inline(always)]
     fn sqrt(self) -> Self {
         Self::both(Lanes::sqrt(self.half()))
-    }
-    #[inline(always)]
-    fn where_else(self, mask: TwiceMask<I>, other: Self) -> Self {
-        let one = self;
-        operation!(Twice, |one, mask, other| Lanes::where_else(one, mask, other))
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> TwiceMask<I> {
-        let one = self;
-        operation!(TwiceMask, |one, other| Lanes::lt(one, other))
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> TwiceMask<I> {
-        let one = self;
-        operation!(TwiceMask, |one, other| Lanes::le(one, other))
     }
     #[inline(always)]
     fn bits(mask: TwiceMask<I>) -> u32 {

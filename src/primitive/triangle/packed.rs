@@ -204,13 +204,13 @@ impl<S: Scalar, L: Lanes<S>> Sights<S, L> {
         // Copies: an index into the ray itself would keep all of it in memory, what is not needed too.
         let Slabs { inv_near, inv_far, .. } = ray.slabs;
         let [i, j, k] = ray.shear.axes;
-        let near = first(operands, self.x, inv_near[i]).max(first(operands, self.y, inv_near[j]).max(first(
-            operands,
-            self.z,
-            inv_near[k],
-        )));
-        let far = last(operands, self.x, inv_far[i])
-            .min(last(operands, self.y, inv_far[j]).min(last(operands, self.z, inv_far[k])));
+        let near_x = first(operands, self.x, inv_near[i]);
+        let near_y = first(operands, self.y, inv_near[j]);
+        let near_z = first(operands, self.z, inv_near[k]);
+        let far_x = last(operands, self.x, inv_far[i]);
+        let far_y = last(operands, self.y, inv_far[j]);
+        let far_z = last(operands, self.z, inv_far[k]);
+        let (near, far) = (near_x.max(near_y.max(near_z)), far_x.min(far_y.min(far_z)));
         near.le(t) & near.le(far) & operands.splat(ray.t_min).le(far)
     }
 
