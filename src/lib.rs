@@ -74,6 +74,7 @@ mod builder;
 mod bvh;
 mod geometry;
 mod layout;
+mod memory;
 mod parallel;
 mod primitive;
 mod query;

@@ -149,33 +149,38 @@ fn later_builds_take_the_memory_of_earlier_ones() {
         let mut peak = |count: usize| {
             let input = triangles[..count].to_vec();
             let (bvh, peak) = memory::peak(|| builder.clone().build_in(&mut workspace, input).unwrap());
-            let bytes = bvh.report().memory_bytes;
+            let (bytes, left) = (bvh.report().memory_bytes, workspace.bytes());
             bvh.recycle(&mut workspace);
-            (peak as f64, bytes, workspace.bytes())
+            (peak as f64, bytes, left, workspace.bytes())
         };
         let (first, ..) = peak(90_000);
         let mut kept = 0;
         // Small ones do not lose what they cannot use; what grows a little does not need new memory each time.
         for count in [90_000, 100, 0, 90_000, 91_000, 92_000, 93_000] {
-            let (peak, bytes, now) = peak(count);
+            let (peak, bytes, left, now) = peak(count);
             assert!(count < 92_000 || now == kept, "{quality:?}, {count}: other memory");
             kept = now;
             assert!(count == 91_000 || peak < 0.35 * first, "{quality:?}, {count}: {peak}, at first {first}");
             assert!(bytes < 100 * count + 2_000, "{quality:?}, {count}: {bytes} bytes");
+            assert!(
+                count > 100 || left == now,
+                "{quality:?}, {count}: a small one has none of a large one's"
+            );
         }
-        assert!(workspace.bytes() > 100 * 90_000, "{} bytes kept", workspace.bytes());
+        assert!(workspace.bytes() > 80 * 90_000, "{} bytes kept", workspace.bytes());
         let small = triangles[..100].iter().copied();
         let binary = builder.layout::<Tree>().build_in(&mut workspace, small).unwrap();
         assert!(binary.report().memory_bytes < 20_000, "a small one has none of a large one's");
     }
 }
 
-/// What is not kept is freed as soon as it can be.
+/// What is not kept is freed as soon as it can be. References lie in memory that is reserved for the layout, 71 bytes for each: not all
+/// of it is touched.
 #[test]
 fn a_build_without_a_workspace_peaks_no_higher_than_it_has_to() {
     let _turn = turn();
     let triangles = triangles::<f32>(100_000);
-    for (quality, most) in [(Quality::Fast, 95), (Quality::Balanced, 115)] {
+    for (quality, most) in [(Quality::Fast, 97), (Quality::Balanced, 115)] {
         let input = triangles.clone();
         let builder = Bvh::builder().quality(quality).threads(1);
         let (_bvh, peak) = memory::peak(|| builder.build(input).unwrap());

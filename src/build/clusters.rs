@@ -34,12 +34,12 @@ use super::runs::Cutter;
 use super::subtree::{Piece, Subtree, TASK_SIZE, join, task_child};
 use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
+use crate::memory::with_numbers;
 use crate::parallel;
 use crate::primitive::LEAF_WIDTH;
 use crate::tree::{Child, MAX_DEPTH};
 use alloc::vec;
 use alloc::vec::Vec;
-use core::mem::take;
 use core::ops::Range;
 
 /// Up to this many times its primitives' share of the scene's area a cluster's box may have, whatever is in it.
@@ -60,7 +60,7 @@ const _: () = assert!(TASK_SIZE < 1 << DEPTH, "what lies in a task halves to one
 /// The tree over references, at least one, in clusters of up to `size`, which `split` makes a tree of: one whose leaves
 /// are single clusters.
 pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
-    references: &[PrimRef<S>],
+    references: &mut Vec<PrimRef<S>>,
     scene: &Aabb<S>,
     size: usize,
     rules: &Rules<'_, H>,
@@ -71,8 +71,10 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
     // Of a cluster that is cut, no more than the layout can divide; of one with a tree, no more than lie in one task.
     let is_cut = rules.max_runs > 1;
     let size = if is_cut { size.min(rules.max_leaf_size * rules.max_runs) } else { size.min(TASK_SIZE) };
-    let codes = codes(references, scene, take(&mut buffers.keys));
-    let curve = Curve::new(codes, MAX_DEPTH, buffers);
+    let (references, numbers) = with_numbers(references, 2);
+    let (keys, spare) = numbers.split_at_mut(references.len());
+    codes(references, scene, keys);
+    let curve = Curve::new(keys, spare, MAX_DEPTH);
     let (_, tasks) = curve.divide::<S>();
     let order = Order { references, curve: &curve, max_leaf_size: rules.max_leaf_size };
     let scale = scene.area_scale();
@@ -121,9 +123,7 @@ pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
         node.children = node.children.map(moved);
     }
     let top = Subtree { nodes, root: moved(root), ..Subtree::with_capacity(0, 0) };
-    let joined = join(top, &subtrees, buffers);
-    buffers.keys = curve.keys;
-    joined
+    join(top, &subtrees, buffers)
 }
 
 /// Finds clusters among neighbours.

@@ -1,6 +1,5 @@
 //! References in the order of a curve: keys of their codes and places, sorted.
 
-use super::buffers::Buffers;
 use super::radix::sort;
 use super::subtree::{Parent, Subtree, TASK_SIZE, task_child};
 use crate::geometry::{Aabb, Scalar};
@@ -13,30 +12,26 @@ use core::ops::Range;
 const _: () = assert!(MAX_DEPTH <= u64::BITS as usize);
 
 /// Sorted keys: a code, and behind it the place of its reference, so that no two are equal.
-pub(super) struct Curve {
-    pub keys: Vec<u64>,
+pub(super) struct Curve<'m> {
+    pub keys: &'m [u64],
     /// The bits of a key that are the place.
     place: u64,
 }
 
-impl Curve {
+impl<'m> Curve<'m> {
     /// Of at least one code. Keys have `bits` at the most: codes lose their lowest if they have too many. Not fewer than
-    /// places take.
-    pub fn new<S>(codes: Vec<u64>, bits: usize, buffers: &mut Buffers<S>) -> Self {
+    /// places take. `spare` is memory for as many, and the keys lie in one of the two.
+    pub fn new(codes: &'m mut [u64], spare: &'m mut [u64], bits: usize) -> Self {
         let place_bits = usize::BITS - (codes.len() - 1).leading_zeros();
         let code_bits = u64::BITS - codes.iter().fold(0, |all, code| all | code).leading_zeros();
         let lost = (code_bits + place_bits).saturating_sub(bits as u32);
-        let mut keys = codes;
-        let parts = keys.chunks_mut(TASK_SIZE).zip((0..).step_by(TASK_SIZE));
+        let parts = codes.chunks_mut(TASK_SIZE).zip((0..).step_by(TASK_SIZE));
         parallel::map(parts.collect(), |(codes, first)| {
             for (code, place) in codes.iter_mut().zip(first..) {
                 *code = (*code >> lost).unbounded_shl(place_bits) | place;
             }
         });
-        sort(&mut keys, &mut buffers.spare_keys, place_bits, place_bits + code_bits - lost);
-        if !buffers.are_kept {
-            buffers.spare_keys = Vec::new();
-        }
+        let keys = sort(codes, spare, place_bits, place_bits + code_bits - lost);
         Self { keys, place: (1 << place_bits) - 1 }
     }
 

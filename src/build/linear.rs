@@ -24,16 +24,17 @@ use core::ops::Range;
 const AHEAD: usize = 32;
 
 /// The subtree over references, as many as there are codes, and at least one, no deeper than `depth`, in which there is
-/// room for as many.
+/// room for as many. `spare` is memory for as many codes.
 pub(super) fn build<S: Scalar>(
     references: &[PrimRef<S>],
-    codes: Vec<u64>,
+    codes: &mut [u64],
+    spare: &mut [u64],
     depth: usize,
     max_leaf_size: usize,
     watch: &Watch<'_>,
     buffers: &mut Buffers<S>,
 ) -> Subtree<S> {
-    let curve = Curve::new(codes, depth, buffers);
+    let curve = Curve::new(codes, spare, depth);
     let (mut top, tasks) = curve.divide();
     let order = Order { references, curve: &curve, max_leaf_size };
     let built = parallel::map(tasks, |task: Range<usize>| {
@@ -56,15 +57,13 @@ pub(super) fn build<S: Scalar>(
         });
         top.nodes[index] = Node { children, ..Node::new(boxes) };
     }
-    let joined = join(top, &subtrees.iter().map(Subtree::all).collect::<Vec<_>>(), buffers);
-    buffers.keys = curve.keys;
-    joined
+    join(top, &subtrees.iter().map(Subtree::all).collect::<Vec<_>>(), buffers)
 }
 
 /// What the keys stand for.
 pub(super) struct Order<'r, S> {
     pub references: &'r [PrimRef<S>],
-    pub curve: &'r Curve,
+    pub curve: &'r Curve<'r>,
     pub max_leaf_size: usize,
 }
 

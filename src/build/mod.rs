@@ -24,7 +24,7 @@ mod runs;
 mod subtree;
 mod watch;
 
-pub(crate) use buffers::{Buffers, fitting, keep_larger};
+pub(crate) use buffers::Buffers;
 pub(crate) use divide::Rules;
 pub(crate) use driver::build_tree;
 pub use optimise::{Gain, Optimise};

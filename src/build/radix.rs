@@ -1,7 +1,6 @@
 //! Sorting of codes.
 
 use crate::parallel;
-use alloc::vec::Vec;
 
 /// Bits in a digit: the places of 2,048 digits fit the first cache.
 const DIGIT: u32 = 11;
@@ -16,23 +15,20 @@ const FEW: usize = 256;
 const BUCKET: usize = 1 << 15;
 
 /// Sorts keys that ascend already as far as they are equal above the bit `low`; there are no bits from `high` on. `spare`
-/// is memory.
+/// is memory for as many: the sorted keys are in one of the two.
 ///
 /// A radix sort: by the highest bits into buckets, and those, at the same time, by four digits from the lowest up. What is equal in
 /// all of them, which is little but in the densest places, is sorted by comparisons. 6 ns a key; by the highest digit into 2,048
 /// buckets, and those by two digits more, it was 8, since small buckets clear more places than they have keys.
-pub(super) fn sort(keys: &mut Vec<u64>, spare: &mut Vec<u64>, low: u32, high: u32) {
-    if keys.len() < FEW {
-        return keys.sort_unstable();
-    }
-    spare.resize(keys.len(), 0);
+pub(super) fn sort<'m>(keys: &'m mut [u64], spare: &'m mut [u64], low: u32, high: u32) -> &'m [u64] {
     let bits = (keys.len() / BUCKET).checked_ilog2().unwrap_or(0).min(DIGIT);
     if bits == 0 {
-        return sort_bucket(keys, spare, low, high);
+        sort_bucket(keys, spare, low, high);
+        return keys;
     }
     let top = high.saturating_sub(bits).max(low);
     let mut ends = scatter(keys, spare, top);
-    let (mut sources, mut targets) = (spare.as_mut_slice(), keys.as_mut_slice());
+    let (mut sources, mut targets) = (&mut *spare, &mut *keys);
     let mut done = 0;
     let parts = ends.iter_mut().map(|end| {
         let len = *end as usize - core::mem::replace(&mut done, *end as usize);
@@ -44,7 +40,7 @@ pub(super) fn sort(keys: &mut Vec<u64>, spare: &mut Vec<u64>, low: u32, high: u3
     });
     let parts = parts.filter(|(bucket, _)| bucket.len() > 1).collect();
     parallel::map(parts, |(bucket, spare)| sort_bucket(bucket, spare, low, top));
-    core::mem::swap(keys, spare);
+    spare
 }
 
 /// Sorts a bucket below the bit `high`.
@@ -91,6 +87,8 @@ fn scatter(keys: &[u64], sorted: &mut [u64], shift: u32) -> [u32; 1 << DIGIT] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use alloc::vec;
+    use alloc::vec::Vec;
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
@@ -107,9 +105,8 @@ mod tests {
                 let keys: Vec<u64> = (0..n).map(|place| code() << 17 | place).collect();
                 let mut expected = keys.clone();
                 expected.sort_unstable();
-                let mut sorted = keys;
-                sort(&mut sorted, &mut Vec::new(), 17, 17 + bits);
-                assert!(sorted == expected, "{n} keys of {bits} bits");
+                let (mut keys, mut spare) = (keys, vec![0; expected.len()]);
+                assert!(sort(&mut keys, &mut spare, 17, 17 + bits) == expected, "{n} keys of {bits} bits");
             }
         }
     }

@@ -1,7 +1,8 @@
 //! Parts of a tree that were built by themselves, and the tree made of them.
 
-use super::buffers::{Buffers, fitting};
+use super::buffers::Buffers;
 use crate::geometry::{Aabb, Scalar};
+use crate::memory::fitting;
 use crate::parallel;
 use crate::tree::{Child, Node, Run};
 use alloc::vec;

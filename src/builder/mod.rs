@@ -274,6 +274,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         pace: &(dyn Fn(f64) -> Pace + Sync),
         workspace: &mut Workspace<P::Scalar>,
     ) -> Result<(L, Vec<u32>), BuildError> {
+        self.make_room(primitives.len(), workspace);
         let skipped = self.refer(primitives, &mut workspace.build.references)?;
         let block_size = L::BLOCK_SIZE;
         let rules = Rules {
@@ -285,7 +286,11 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         };
         let watch = Watch::new(pace);
         let mut tree = build_tree(&mut workspace.build, &rules, &watch).ok_or(BuildError::Stopped)?;
-        workspace.build.are_done();
+        if workspace.is_kept || L::BYTES > 0 {
+            workspace.take_back();
+        } else {
+            workspace.build = Default::default();
+        }
         let optimise = self.optimise.or_else(|| self.heuristic.optimise());
         if let Some(optimise) = optimise.filter(|optimise| optimise.rounds > 0) {
             optimise.run(&mut tree, || watch.ask() == Pace::Steady);
@@ -295,7 +300,22 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         }
         let layout = L::lay_out(&mut tree, primitives, &mut workspace.layout);
         workspace.build.reclaim(tree);
-        Ok((layout.ok_or(BuildError::TooLarge)?, skipped))
+        let mut layout = layout.ok_or(BuildError::TooLarge)?;
+        if !workspace.is_kept {
+            layout.shrink();
+        }
+        Ok((layout, skipped))
+    }
+
+    /// For references, what the heuristic wants beside them, and what is made of them.
+    fn make_room(&self, count: usize, workspace: &mut Workspace<P::Scalar>) {
+        let size = size_of::<PrimRef<P::Scalar>>();
+        // Clusters are sorted by two lists of keys.
+        let keys = if self.heuristic.cluster_size() > 1 { 2 * size_of::<u64>() } else { 0 };
+        // Where addresses are short, memory for later may be more than there is.
+        let later = if size_of::<usize>() >= 8 { L::BYTES } else { 0 };
+        let spare = self.heuristic.spare(count).min(u32::MAX as usize);
+        workspace.lend(count.saturating_add(spare), count.saturating_mul(later.max(size + keys)));
     }
 
     /// What the watcher says, and the clock.

@@ -1,9 +1,12 @@
 //! Memory that one build leaves to the next.
 
-use crate::build;
+use crate::build::{self, PrimRef};
 use crate::geometry::Scalar;
 use crate::layout;
+use crate::memory::{fitting, recast};
+use alloc::vec::Vec;
 use core::fmt;
+use core::mem::take;
 
 /// Memory that builds leave behind and later ones take: for who builds often, such as each frame.
 ///
@@ -36,13 +39,13 @@ use core::fmt;
 pub struct Workspace<S: Scalar = f32> {
     pub(crate) build: build::Buffers<S>,
     pub(crate) layout: layout::Buffers,
+    /// For another build; else they are freed as soon as they are not needed.
+    pub(super) is_kept: bool,
 }
 
 impl<S: Scalar> Default for Workspace<S> {
     fn default() -> Self {
-        let mut workspace = Self::for_one_build();
-        workspace.build.are_kept = true;
-        workspace
+        Self { is_kept: true, ..Self::for_one_build() }
     }
 }
 
@@ -60,7 +63,22 @@ impl<S: Scalar> Workspace<S> {
 
     /// Of a build that leaves nothing behind, and frees what it does not need any more.
     pub(super) fn for_one_build() -> Self {
-        Self { build: build::Buffers::default(), layout: layout::Buffers::default() }
+        Self { build: build::Buffers::default(), layout: layout::Buffers::default(), is_kept: false }
+    }
+
+    /// Empty memory for so many references, of at least so many bytes.
+    pub(super) fn lend(&mut self, references: usize, bytes: usize) {
+        // What a build that failed has left.
+        self.take_back();
+        let mut kept: Vec<PrimRef<S>> = recast(take(self.layout.words()));
+        let size = size_of::<PrimRef<S>>();
+        self.build.references = fitting(&mut kept, references.max(bytes / size).next_multiple_of(2));
+        self.layout.keep_words(recast(kept));
+    }
+
+    /// The references' memory is the layout's.
+    pub(super) fn take_back(&mut self) {
+        self.layout.keep_words(recast(take(&mut self.build.references)));
     }
 
     /// Bytes of memory that it keeps.

@@ -1,6 +1,6 @@
 //! Nodes and leaves of different sizes, one after another in line-aligned memory.
 
-use crate::build::fitting;
+use crate::memory::{Word, fitting};
 use crate::parallel;
 use crate::simd::prefetch;
 use alloc::vec::Vec;
@@ -9,11 +9,6 @@ use core::ops::Range;
 
 /// Bytes in a cache line.
 const LINE: usize = 64;
-
-/// Where lines may begin: of 8 bytes on every target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C, align(8))]
-pub(super) struct Word(u64);
 
 /// Memory in which blocks of plain data lie: all of it initialised, with zeros between them.
 ///
@@ -26,7 +21,7 @@ pub(super) struct Word(u64);
 /// it touches memory that was given back. The kernel had nothing to compact. Rays were quicker by 1 %.
 #[derive(Default)]
 pub(super) struct Blocks {
-    /// One line more than there is room for, less a word: somewhere in them the first line begins.
+    /// One line more than there is room for: somewhere in them the first line begins.
     words: Vec<Word>,
     /// The first line's first word.
     first: usize,
@@ -56,14 +51,14 @@ impl Blocks {
         if lines == 0 {
             return Self::default();
         }
-        let len = lines * WORDS + WORDS - 1;
+        let len = (lines + 1) * WORDS;
         let mut words = fitting(memory, len);
         let address = words.as_ptr().addr();
         let first = (address.next_multiple_of(LINE) - address) / size_of::<Word>();
         let (before, rest) = words.spare_capacity_mut()[..len].split_at_mut(first);
         let (mut rest, behind) = rest.split_at_mut(lines * WORDS);
-        before.fill(MaybeUninit::new(Word(0)));
-        behind.fill(MaybeUninit::new(Word(0)));
+        before.fill(MaybeUninit::new(Word([0; 2])));
+        behind.fill(MaybeUninit::new(Word([0; 2])));
         let mut parts = Vec::with_capacity(ranges.len());
         let mut done = 0;
         for (number, range) in ranges.iter().enumerate() {
@@ -82,14 +77,22 @@ impl Blocks {
         Self { words, first, lines }
     }
 
+    /// Gives back the memory that it does not need, if that is more than half as much. Less stays where it is: it was not touched,
+    /// and buffers that come and go in one size are what allocators keep.
+    pub fn shrink(&mut self) {
+        if self.words.capacity() - self.words.len() > self.words.len() / 2 {
+            self.words.shrink_to_fit();
+        }
+    }
+
     /// The memory, for others.
     pub fn into_words(self) -> Vec<Word> {
         self.words
     }
 
-    /// Bytes of memory.
+    /// Bytes of memory, without what is behind them: see [`shrink`](Self::shrink).
     pub fn bytes(&self) -> usize {
-        self.words.capacity() * size_of::<Word>()
+        size_of_val(&*self.words)
     }
 
     /// Bytes of the lines.
@@ -210,7 +213,7 @@ mod tests {
     #[test]
     fn parts_are_written_and_the_rest_is_clear() {
         // What the allocator has at hand for the same size is not clear.
-        drop(core::hint::black_box(alloc::vec![Word(u64::MAX); 384 / 8 + WORDS - 1]));
+        drop(core::hint::black_box(alloc::vec![Word([u64::MAX; 2]); 384 / 16 + WORDS]));
         let blocks =
             Blocks::filled(&mut Vec::new(), &[0..100, 128..300, 320..320, 320..323], |number, part| {
                 if number == 2 {
@@ -221,7 +224,8 @@ mod tests {
                 assert_eq!(places, [0]);
                 places[0] = number as u8 + 1;
             });
-        let bytes: Vec<u8> = blocks.words().iter().flat_map(|word| word.0.to_ne_bytes()).collect();
+        let bytes: Vec<u8> =
+            blocks.words().iter().flat_map(|word| word.0).flat_map(u64::to_ne_bytes).collect();
         assert!(blocks.words().as_ptr().addr().is_multiple_of(LINE));
         let mut expected = alloc::vec![0; 384];
         (expected[0], expected[129], expected[323]) = (1, 2, 4);

@@ -1,7 +1,6 @@
 //! Memory that one layout leaves to the next.
 
-use super::blocks::Word;
-use crate::build::keep_larger;
+use crate::memory::{Word, keep_larger};
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::any::Any;
@@ -18,12 +17,12 @@ pub struct Buffers {
 
 impl Buffers {
     /// Memory for blocks.
-    pub(super) fn words(&mut self) -> &mut Vec<Word> {
+    pub(crate) fn words(&mut self) -> &mut Vec<Word> {
         &mut self.words
     }
 
     /// Takes over the memory of blocks, if it is more.
-    pub(super) fn keep_words(&mut self, words: Vec<Word>) {
+    pub(crate) fn keep_words(&mut self, words: Vec<Word>) {
         keep_larger(&mut self.words, words);
     }
 

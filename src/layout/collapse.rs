@@ -1,11 +1,12 @@
 //! The wide tree, as planned: first where every block lies, then what is in it.
 
-use super::blocks::{Blocks, Part, Word};
+use super::blocks::{Blocks, Part};
 use super::buffers::Buffers;
 use super::form::{Form, Node};
 use super::plan::Plan;
 use super::wide::{MAX_PENDING, NOBODY, Reference, WideTree};
 use crate::geometry::{Aabb, Scalar};
+use crate::memory::Word;
 use crate::parallel;
 use crate::primitive::LEAF_WIDTH;
 use crate::tree::{Child, MAX_DEPTH, Tree};

@@ -39,9 +39,17 @@ pub trait Layout<P: Primitive>: Outline<P::Scalar> + Send + Sized {
     #[doc(hidden)]
     const RUNS: usize;
 
+    /// About how many bytes it takes for each primitive, if it may be more than references to them take.
+    #[doc(hidden)]
+    const BYTES: usize;
+
     /// Lays out a tree over the primitives with its indices, and takes from it what is kept.
     #[doc(hidden)]
     fn lay_out(tree: &mut Tree<P::Scalar>, primitives: &[P], buffers: &mut Buffers) -> Option<Self>;
+
+    /// Gives back memory that it does not need.
+    #[doc(hidden)]
+    fn shrink(&mut self);
 
     /// Leaves its memory to the next, what was taken from a tree as one.
     #[doc(hidden)]
@@ -109,10 +117,13 @@ impl<S: Scalar> Outline<S> for Tree<S> {
 impl<P: Primitive> Layout<P> for Tree<P::Scalar> {
     const BLOCK_SIZE: usize = 1;
     const RUNS: usize = 1;
+    const BYTES: usize = 0;
 
     fn lay_out(tree: &mut Self, _: &[P], _: &mut Buffers) -> Option<Self> {
         Some(take(tree))
     }
+
+    fn shrink(&mut self) {}
 
     fn recycle(self, _: &mut Buffers) -> Self {
         self
@@ -158,9 +169,22 @@ where
     /// Where operands have to be gathered first, each counts.
     const BLOCK_SIZE: usize = if F::COPIES && <P::Leaf as Leaf<_, _>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
     const RUNS: usize = N;
+    /// Of leaves of five primitives, and nodes of four for each child: a little more than trees of splits take. Much more is no
+    /// better: it goes back, and then the next build's is new again.
+    const BYTES: usize = if <Self as Layout<P>>::BLOCK_SIZE > 1 {
+        let leaf = <P::Leaf as Leaf<_, P::Payload>>::OPERANDS * size_of::<[P::Scalar; LEAF_WIDTH]>()
+            + size_of::<[u32; LEAF_WIDTH]>();
+        leaf / 5 + size_of::<F::Node>() / (4 * N)
+    } else {
+        0
+    };
 
     fn lay_out(tree: &mut Tree<P::Scalar>, primitives: &[P], buffers: &mut Buffers) -> Option<Self> {
         Self::new(tree, &primitives, buffers)
+    }
+
+    fn shrink(&mut self) {
+        self.blocks.shrink();
     }
 
     fn recycle(self, buffers: &mut Buffers) -> Tree<P::Scalar> {

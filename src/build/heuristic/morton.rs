@@ -7,6 +7,7 @@ use crate::build::subtree::TASK_SIZE;
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
 use crate::simd::{Backend, Kernel, prefetch_ahead};
+use alloc::vec;
 use alloc::vec::Vec;
 use fearless_simd::Simd;
 
@@ -23,7 +24,9 @@ const BITS: u32 = 16;
 
 impl<S: Scalar> Heuristic<S> for Morton {
     fn codes(&self, references: &[PrimRef<S>], scene: &Aabb<S>) -> Option<Vec<u64>> {
-        Some(codes(references, scene, Vec::new()))
+        let mut numbers = vec![0; references.len()];
+        codes(references, scene, &mut numbers);
+        Some(numbers)
     }
 
     /// Of a heuristic that asks this one but does not pass its codes on: equal halves.
@@ -32,18 +35,12 @@ impl<S: Scalar> Heuristic<S> for Morton {
     }
 }
 
-/// Each reference's place on the curve through a box, in the memory of `codes`.
-pub(in crate::build) fn codes<S: Scalar>(
-    references: &[PrimRef<S>],
-    scene: &Aabb<S>,
-    mut codes: Vec<u64>,
-) -> Vec<u64> {
-    codes.resize(references.len(), 0);
+/// Writes each reference's place on the curve through a box.
+pub(in crate::build) fn codes<S: Scalar>(references: &[PrimRef<S>], scene: &Aabb<S>, codes: &mut [u64]) {
     let parts = references.chunks(TASK_SIZE).zip(codes.chunks_mut(TASK_SIZE));
     parallel::map(parts.collect(), |(references, codes)| {
         Backend::best().run(Codes { references, scene, codes });
     });
-    codes
 }
 
 struct Codes<'r, S> {
@@ -108,8 +105,11 @@ mod tests {
         let at = |point: [f32; 3]| PrimRef::new(Aabb::new(point, point), u32::MAX);
         let corners = [at(scene.min), at(scene.center()), at(scene.max)];
         // Of each coordinate, the highest bit and no other; all bits.
-        assert_eq!(codes(&corners, &scene, Vec::new()), [0, 0b111 << 45, (1 << 48) - 1]);
+        let mut found = [7; 3];
+        codes(&corners, &scene, &mut found);
+        assert_eq!(found, [0, 0b111 << 45, (1 << 48) - 1]);
         let flat = Aabb::new([5.0; 3], [5.0; 3]);
-        assert_eq!(codes(&[at([5.0; 3])], &flat, alloc::vec![7, 7]), [0]);
+        codes(&[at([5.0; 3])], &flat, &mut found[..1]);
+        assert_eq!(found[0], 0);
     }
 }
