@@ -4,6 +4,7 @@ use super::search::Move;
 use crate::geometry::{Aabb, Scalar};
 use crate::tree::{Child, MAX_DEPTH, Node, Run, Tree};
 use alloc::vec::Vec;
+use core::mem::take;
 
 /// A tree whose nodes, inner ones first, then leaves, know their parents, boxes and heights.
 pub(super) struct Linked<S> {
@@ -178,7 +179,8 @@ impl<S: Scalar> Linked<S> {
 
     /// Writes nodes and slots depth first.
     pub fn write(&self, tree: &mut Tree<S>) {
-        let mut nodes: Vec<Node<S>> = Vec::with_capacity(self.children.len());
+        let mut nodes = take(&mut tree.nodes);
+        nodes.clear();
         let mut indices = Vec::with_capacity(tree.indices.len());
         let mut runs = Vec::with_capacity(tree.runs.len());
         let mut open: Vec<(Option<(usize, usize)>, u32)> = alloc::vec![(None, Self::ROOT)];
