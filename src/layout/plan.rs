@@ -12,6 +12,10 @@
 //! node(n)       = area(n) * NODE + split(n, N)
 //! leaf(n)       = area(n) * LEAF, if its primitives fit into one
 //! ```
+//!
+//! Refused: opening the largest child until a node is full, as most do. Closest hits are found at 0.94 to 0.95 of the rate (primary,
+//! diffuse and random rays, six scenes; 0.88 to 1.02 each), any hits at 0.98 to 0.99, in 68 to 73 bytes a triangle instead of 61 to 67;
+//! the build takes as long.
 
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
