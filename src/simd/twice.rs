@@ -23,7 +23,13 @@ pub struct TwiceMask<I: Simd>(mask32x16<I>);
 /// Whether both halves are one vector.
 #[inline(always)]
 fn is_one_vector<I: Simd>(isa: I) -> bool {
-    isa.level().as_avx512().is_some()
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    return isa.level().as_avx512().is_some();
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    {
+        let _ = isa;
+        false
+    }
 }
 
 impl<I: Simd> Twice<I> {
