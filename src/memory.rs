@@ -3,8 +3,7 @@
 //! What is new to a process costs more than what is written to it: systems hand it out page by page, as it is touched, and on a
 //! virtual machine a page took a microsecond or two. So a build touches little of it: references to primitives, keys
 //! behind them, and then the nodes and leaves of the tree that was made of them lie in the same memory. It touches a
-//! quarter to a third less so (sponza: `Quality::Fast` 5,700 pages instead of 8,400, `Balanced` 7,900 instead of 10,100), and
-//! more builds find all of it in what the allocator has kept from the last one.
+//! quarter to a third less so (sponza: `Quality::Fast` 5,700 pages instead of 8,400, `Balanced` 6,900 instead of 10,100).
 
 use alloc::vec::Vec;
 use core::mem::{ManuallyDrop, take};
@@ -43,9 +42,19 @@ pub(crate) fn with_numbers<T: Copy>(items: &mut Vec<T>, each: usize) -> (&mut [T
     }
 }
 
+/// New memory for so many.
+///
+/// Asked for twice: glibc keeps of its heap, when all is freed, twice as much as the largest block that ever came and went. A buffer
+/// that shrinks before it goes is too small for that, and every later build's pages would be new again. Once there and back
+/// takes two calls of the system, and no page.
+pub(crate) fn new_memory<T>(len: usize) -> Vec<T> {
+    drop(core::hint::black_box(Vec::<T>::with_capacity(len)));
+    Vec::with_capacity(len)
+}
+
 /// An empty buffer for so many: the kept one, unless it is too small, or so large that what is made of it would take much more
-/// than it has to. In place of one that is too small, one that is larger by an eighth, for what goes on to grow; by a
-/// multiple of four, as words may have to be.
+/// than it has to. In place of one that is too small, one that is larger by an eighth, for what goes on to grow: by a
+/// multiple of four, so that words remain a whole number of references.
 pub(crate) fn fitting<T>(kept: &mut Vec<T>, len: usize) -> Vec<T> {
     kept.clear();
     match kept.capacity() {

@@ -22,13 +22,13 @@ impl fmt::Display for ThreadPoolError {
 
 impl core::error::Error for ThreadPoolError {}
 
-/// Whether another thread could help with so many items, each of which takes a while. Else they are done on the spot: small
+/// Whether another thread could help with so many parts, each of which takes a while. Else they are done on the spot: small
 /// builds never wake a thread, and a pool of one is not worth going to. To go there and back for every call took 1 to 4 ms of a
 /// build on a virtual machine (kitchen with `Quality::Fast` 5.3 ms instead of 4.1, dragon with `Balanced` 44.6 instead of 42.3). Once
 /// for the whole build, where there are two, gained nothing.
 #[cfg(feature = "rayon")]
-fn has_help(items: usize) -> bool {
-    items > 1 && rayon::current_num_threads() > 1
+fn has_help(parts: usize) -> bool {
+    parts > 1 && rayon::current_num_threads() > 1
 }
 
 /// Applies `f` to each item, results in the items' order.
@@ -107,7 +107,7 @@ pub(crate) fn concat<T: Send, I: ExactSizeIterator<Item = T> + Send>(
     all
 }
 
-/// Items for which no other thread is woken.
+/// Items in a part: for fewer no other thread is woken.
 const FEW: usize = 1 << 12;
 
 /// Runs `f` where [`map`] has `threads` threads; with `None`, those of the pool it is called in.

@@ -18,7 +18,6 @@ use super::reference::{PrimRef, bounds};
 use super::subtree::{Parent, Subtree, TASK_SIZE, join, task_child};
 use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
-use crate::memory::with_numbers;
 use crate::parallel;
 use crate::simd::prefetch_ahead;
 use crate::tree::Tree;
@@ -85,10 +84,8 @@ fn build_whole<S: Scalar, H: Heuristic<S> + ?Sized>(
     }
     watch.begin(references.len());
     let codes = rules.heuristic.codes(references, &aabb);
-    if let Some(mut codes) = codes.filter(|codes| codes.len() == references.len()) {
-        let (references, spare) = with_numbers(references, 1);
-        let Rules { max_depth, max_leaf_size, .. } = *rules;
-        return linear::build(references, &mut codes, spare, max_depth, max_leaf_size, watch, buffers);
+    if let Some(codes) = codes.filter(|codes| codes.len() == references.len()) {
+        return linear::build(references, codes, rules.max_depth, rules.max_leaf_size, watch, buffers);
     }
     let size = rules.heuristic.cluster_size();
     if size < 2 {
@@ -159,11 +156,11 @@ fn build_subtree<S: Scalar, H: Heuristic<S> + ?Sized>(
     match watch.ask() {
         Pace::Steady => {}
         Pace::Hurry => {
-            let (mut keys, mut spare) = (vec![0; len], vec![0; len]);
-            codes(root.references(), scene, &mut keys);
-            let (depth, size) = (rules.max_depth - root.depth, rules.max_leaf_size);
+            let mut numbers = vec![0; len];
+            codes(root.references(), scene, &mut numbers);
+            let depth = rules.max_depth - root.depth;
             let buffers = &mut Buffers::default();
-            return linear::build(root.references(), &mut keys, &mut spare, depth, size, watch, buffers);
+            return linear::build(root.references(), numbers, depth, rules.max_leaf_size, watch, buffers);
         }
         Pace::Stop => return Subtree::with_capacity(0, 0),
     }

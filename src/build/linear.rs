@@ -17,6 +17,7 @@ use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
 use crate::simd::prefetch;
 use crate::tree::{Child, Node};
+use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -24,17 +25,17 @@ use core::ops::Range;
 const AHEAD: usize = 32;
 
 /// The subtree over references, as many as there are codes, and at least one, no deeper than `depth`, in which there is
-/// room for as many. `spare` is memory for as many codes.
+/// room for as many.
 pub(super) fn build<S: Scalar>(
     references: &[PrimRef<S>],
-    codes: &mut [u64],
-    spare: &mut [u64],
+    mut codes: Vec<u64>,
     depth: usize,
     max_leaf_size: usize,
     watch: &Watch<'_>,
     buffers: &mut Buffers<S>,
 ) -> Subtree<S> {
-    let curve = Curve::new(codes, spare, depth);
+    let mut spare = vec![0; codes.len()];
+    let curve = Curve::new(&mut codes, &mut spare, depth);
     let (mut top, tasks) = curve.divide();
     let order = Order { references, curve: &curve, max_leaf_size };
     let built = parallel::map(tasks, |task: Range<usize>| {

@@ -286,8 +286,8 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         };
         let watch = Watch::new(pace);
         let mut tree = build_tree(&mut workspace.build, &rules, &watch).ok_or(BuildError::Stopped)?;
-        if workspace.is_kept || L::BYTES > 0 {
-            workspace.take_back();
+        if workspace.is_kept || L::RESERVE > 0 {
+            workspace.hand_over();
         } else {
             workspace.build = Default::default();
         }
@@ -301,7 +301,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         let layout = L::lay_out(&mut tree, primitives, &mut workspace.layout);
         workspace.build.reclaim(tree);
         let mut layout = layout.ok_or(BuildError::TooLarge)?;
-        if !workspace.is_kept {
+        if !workspace.layout.is_kept {
             layout.shrink();
         }
         Ok((layout, skipped))
@@ -310,12 +310,16 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// For references, what the heuristic wants beside them, and what is made of them.
     fn make_room(&self, count: usize, workspace: &mut Workspace<P::Scalar>) {
         let size = size_of::<PrimRef<P::Scalar>>();
-        // Clusters are sorted by two lists of keys.
-        let keys = if self.heuristic.cluster_size() > 1 { 2 * size_of::<u64>() } else { 0 };
+        let beside = if self.heuristic.cluster_size() > 1 {
+            // Two lists of keys.
+            count.saturating_mul(2 * size_of::<u64>())
+        } else {
+            // A heuristic that asks for very much gets it when it splits.
+            size.saturating_mul(self.heuristic.spare(count)).min(size.saturating_mul(count))
+        };
         // Where addresses are short, memory for later may be more than there is.
-        let later = if size_of::<usize>() >= 8 { L::BYTES } else { 0 };
-        let spare = self.heuristic.spare(count).min(u32::MAX as usize);
-        workspace.lend(count.saturating_add(spare), count.saturating_mul(later.max(size + keys)));
+        let later = if size_of::<usize>() >= 8 { L::RESERVE } else { 0 };
+        workspace.make_room(size.saturating_mul(count).saturating_add(beside), later.saturating_mul(count));
     }
 
     /// What the watcher says, and the clock.

@@ -3,7 +3,7 @@
 use crate::build::{self, PrimRef};
 use crate::geometry::Scalar;
 use crate::layout;
-use crate::memory::{fitting, recast};
+use crate::memory::{new_memory, recast};
 use alloc::vec::Vec;
 use core::fmt;
 use core::mem::take;
@@ -66,18 +66,18 @@ impl<S: Scalar> Workspace<S> {
         Self { build: build::Buffers::default(), layout: layout::Buffers::default(), is_kept: false }
     }
 
-    /// Empty memory for so many references, of at least so many bytes.
-    pub(super) fn lend(&mut self, references: usize, bytes: usize) {
+    /// Makes room for references, in bytes; for `later` bytes in memory that is made for them, where blocks will follow them.
+    pub(super) fn make_room(&mut self, bytes: usize, later: usize) {
         // What a build that failed has left.
-        self.take_back();
-        let mut kept: Vec<PrimRef<S>> = recast(take(self.layout.words()));
-        let size = size_of::<PrimRef<S>>();
-        self.build.references = fitting(&mut kept, references.max(bytes / size).next_multiple_of(2));
-        self.layout.keep_words(recast(kept));
+        self.hand_over();
+        let len = |bytes: usize| (bytes.div_ceil(size_of::<PrimRef<S>>()) + 1) & !1;
+        let kept: Vec<PrimRef<S>> = recast(self.layout.take_words());
+        self.layout.is_kept = kept.capacity() > 0 && kept.capacity() >= len(bytes);
+        self.build.references = if self.layout.is_kept { kept } else { new_memory(len(bytes.max(later))) };
     }
 
-    /// The references' memory is the layout's.
-    pub(super) fn take_back(&mut self) {
+    /// References are not needed any more: what they lie in is memory for blocks.
+    pub(super) fn hand_over(&mut self) {
         self.layout.keep_words(recast(take(&mut self.build.references)));
     }
 

@@ -1,6 +1,6 @@
 //! Nodes and leaves of different sizes, one after another in line-aligned memory.
 
-use crate::memory::{Word, fitting};
+use crate::memory::Word;
 use crate::parallel;
 use crate::simd::prefetch;
 use alloc::vec::Vec;
@@ -38,12 +38,12 @@ impl Blocks {
     /// No block has to begin at multiples of more.
     pub const ALIGN: usize = LINE;
 
-    /// In the memory of others if that [fits](fitting).
+    /// In memory for so many words, which `memory` has.
     ///
     /// Parts are written independently, each by `write`, which is told its number. They are `ranges` of bytes, which begin
     /// with lines and follow one another from 0 on but for what is left of a line. If all are empty, none is written.
     pub fn filled(
-        memory: &mut Vec<Word>,
+        memory: impl FnOnce(usize) -> Vec<Word>,
         ranges: &[Range<usize>],
         write: impl Fn(usize, &mut Part<'_>) + Sync + Send,
     ) -> Self {
@@ -52,7 +52,7 @@ impl Blocks {
             return Self::default();
         }
         let len = (lines + 1) * WORDS;
-        let mut words = fitting(memory, len);
+        let mut words = memory(len);
         let address = words.as_ptr().addr();
         let first = (address.next_multiple_of(LINE) - address) / size_of::<Word>();
         let (before, rest) = words.spare_capacity_mut()[..len].split_at_mut(first);
@@ -77,11 +77,13 @@ impl Blocks {
         Self { words, first, lines }
     }
 
-    /// Gives back the memory that it does not need, if that is more than half as much. Less stays where it is: it was not touched,
-    /// and buffers that come and go in one size are what allocators keep.
+    /// Gives back the memory that it does not need.
     pub fn shrink(&mut self) {
-        if self.words.capacity() - self.words.len() > self.words.len() / 2 {
-            self.words.shrink_to_fit();
+        let before = self.start().addr() % LINE;
+        self.words.shrink_to_fit();
+        // It may have moved, and then lines begin elsewhere.
+        if self.start().addr() % LINE != before {
+            *self = self.clone();
         }
     }
 
@@ -90,9 +92,9 @@ impl Blocks {
         self.words
     }
 
-    /// Bytes of memory, without what is behind them: see [`shrink`](Self::shrink).
+    /// Bytes of memory.
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.words)
+        self.words.capacity() * size_of::<Word>()
     }
 
     /// Bytes of the lines.
@@ -147,7 +149,7 @@ impl Clone for Blocks {
             // SAFETY: words are any bytes, and any bytes are some.
             unsafe { part.get_mut(0, words.len()) }.copy_from_slice(words);
         };
-        Self::filled(&mut Vec::new(), core::slice::from_ref(&(0..size_of_val(words))), copy)
+        Self::filled(Vec::with_capacity, core::slice::from_ref(&(0..size_of_val(words))), copy)
     }
 }
 
@@ -215,7 +217,7 @@ mod tests {
         // What the allocator has at hand for the same size is not clear.
         drop(core::hint::black_box(alloc::vec![Word([u64::MAX; 2]); 384 / 16 + WORDS]));
         let blocks =
-            Blocks::filled(&mut Vec::new(), &[0..100, 128..300, 320..320, 320..323], |number, part| {
+            Blocks::filled(Vec::with_capacity, &[0..100, 128..300, 320..320, 320..323], |number, part| {
                 if number == 2 {
                     return;
                 }
@@ -231,6 +233,16 @@ mod tests {
         (expected[0], expected[129], expected[323]) = (1, 2, 4);
         assert_eq!(bytes, expected);
         assert_eq!(blocks.clone().words(), blocks.words());
-        assert_eq!(Blocks::filled(&mut Vec::new(), &[], |_, _| unreachable!()).words(), []);
+        // In memory for more, of which the rest is given back.
+        let threefold = |len| Vec::with_capacity(3 * len);
+        let mut large = Blocks::filled(threefold, core::slice::from_ref(&(0..1000)), |_, part| {
+            // SAFETY: bytes are any bytes.
+            unsafe { part.get_mut::<u8>(0, 1000) }.fill(7);
+        });
+        let (exact, before) = (large.clone(), large.bytes());
+        large.shrink();
+        assert!(large.words() == exact.words() && large.words().as_ptr().addr().is_multiple_of(LINE));
+        assert!(large.bytes() == exact.bytes() && before == 3 * exact.bytes());
+        assert_eq!(Blocks::filled(Vec::with_capacity, &[], |_, _| unreachable!()).words(), []);
     }
 }

@@ -1,24 +1,37 @@
 //! Memory that one layout leaves to the next.
 
-use crate::memory::{Word, keep_larger};
+use crate::memory::{Word, fitting, keep_larger};
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::any::Any;
+use core::mem::take;
 
 /// The large buffers of a layout.
 #[doc(hidden)]
 #[derive(Default)]
 pub struct Buffers {
     words: Vec<Word>,
+    /// What was left by hierarchies, of many sizes; else made for the next one, and freed or shrunk behind it.
+    pub(crate) is_kept: bool,
     /// A vector, of what depends on the layout's width.
     weights: Option<Box<dyn Any + Send + Sync>>,
     weights_bytes: usize,
 }
 
 impl Buffers {
-    /// Memory for blocks.
-    pub(crate) fn words(&mut self) -> &mut Vec<Word> {
-        &mut self.words
+    /// What memory there is for blocks.
+    pub(crate) fn take_words(&mut self) -> Vec<Word> {
+        take(&mut self.words)
+    }
+
+    /// Empty memory for so many words.
+    pub(super) fn words_for(&mut self, len: usize) -> Vec<Word> {
+        if self.is_kept {
+            return fitting(&mut self.words, len);
+        }
+        Some(self.take_words())
+            .filter(|words| words.capacity() >= len)
+            .unwrap_or_else(|| Vec::with_capacity(len))
     }
 
     /// Takes over the memory of blocks, if it is more.

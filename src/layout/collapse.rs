@@ -103,7 +103,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         let Arrangement { sections, root } = arrangement.ok()?;
         let coordinates = [tree.aabb.min, tree.aabb.max];
         Some(Self {
-            blocks: Self::fill(sections, tree, contents, buffers.words()),
+            blocks: Self::fill(sections, tree, contents, |len| buffers.words_for(len)),
             root,
             aabb: tree.aabb,
             len: tree.len(),
@@ -167,7 +167,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         sections: Vec<Section<S>>,
         tree: &Tree<S>,
         contents: &impl Contents<S>,
-        memory: &mut Vec<Word>,
+        memory: impl FnOnce(usize) -> Vec<Word>,
     ) -> Blocks {
         let ranges: Vec<_> =
             sections.iter().map(|section| section.start..section.start + section.bytes).collect();

@@ -39,9 +39,9 @@ pub trait Layout<P: Primitive>: Outline<P::Scalar> + Send + Sized {
     #[doc(hidden)]
     const RUNS: usize;
 
-    /// About how many bytes it takes for each primitive, if it may be more than references to them take.
+    /// How many bytes are reserved for each primitive, if it may take more than references do.
     #[doc(hidden)]
-    const BYTES: usize;
+    const RESERVE: usize;
 
     /// Lays out a tree over the primitives with its indices, and takes from it what is kept.
     #[doc(hidden)]
@@ -117,7 +117,7 @@ impl<S: Scalar> Outline<S> for Tree<S> {
 impl<P: Primitive> Layout<P> for Tree<P::Scalar> {
     const BLOCK_SIZE: usize = 1;
     const RUNS: usize = 1;
-    const BYTES: usize = 0;
+    const RESERVE: usize = 0;
 
     fn lay_out(tree: &mut Self, _: &[P], _: &mut Buffers) -> Option<Self> {
         Some(take(tree))
@@ -169,10 +169,9 @@ where
     /// Where operands have to be gathered first, each counts.
     const BLOCK_SIZE: usize = if F::COPIES && <P::Leaf as Leaf<_, _>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
     const RUNS: usize = N;
-    /// Of leaves of five primitives, and nodes of two for each child: a fifth more than trees of splits take. With less, glibc, which
-    /// gives back what is free at the end of its heap once that is twice the largest block that came and went, had
-    /// pages of later builds be new again (with 71 bytes in place of 78 for kitchen and spaceship, with 67 for most scenes).
-    const BYTES: usize = if <Self as Layout<P>>::BLOCK_SIZE > 1 {
+    /// For leaves of five primitives, and nodes whose children have two each: a fifth more than trees of splits take, and what they do
+    /// not need goes back.
+    const RESERVE: usize = if <Self as Layout<P>>::BLOCK_SIZE > 1 {
         let leaf = <P::Leaf as Leaf<_, P::Payload>>::OPERANDS * size_of::<[P::Scalar; LEAF_WIDTH]>()
             + size_of::<[u32; LEAF_WIDTH]>();
         leaf / 5 + size_of::<F::Node>() / (2 * N)
