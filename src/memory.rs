@@ -44,11 +44,11 @@ pub(crate) fn with_numbers<T: Copy>(items: &mut Vec<T>, each: usize) -> (&mut [T
 
 /// New memory for so many.
 ///
-/// Asked for twice: glibc keeps of its heap, when all is freed, twice as much as the largest block that ever came and went. A buffer
-/// that shrinks before it goes is too small for that, and every later build's pages would be new again. Once there and back
-/// takes two calls of the system, and no page.
+/// A quarter more comes and goes first: glibc keeps of its heap, when all is freed, twice as much as the largest block that ever
+/// did, and that is to be all that a build takes. Else every later build's pages would be new again. It takes two calls of the
+/// system, and no page.
 pub(crate) fn new_memory<T>(len: usize) -> Vec<T> {
-    drop(core::hint::black_box(Vec::<T>::with_capacity(len)));
+    drop(core::hint::black_box(Vec::<T>::with_capacity(len + len / 4)));
     Vec::with_capacity(len)
 }
 

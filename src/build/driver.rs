@@ -12,7 +12,7 @@
 use super::buffers::Buffers;
 use super::clusters::{self, SPLIT_DEPTH};
 use super::divide::{Rules, Set};
-use super::heuristic::{Heuristic, codes};
+use super::heuristic::{Heuristic, new_codes};
 use super::linear;
 use super::reference::{PrimRef, bounds};
 use super::subtree::{Parent, Subtree, TASK_SIZE, join, task_child};
@@ -156,11 +156,10 @@ fn build_subtree<S: Scalar, H: Heuristic<S> + ?Sized>(
     match watch.ask() {
         Pace::Steady => {}
         Pace::Hurry => {
-            let mut numbers = vec![0; len];
-            codes(root.references(), scene, &mut numbers);
+            let codes = new_codes(root.references(), scene);
             let depth = rules.max_depth - root.depth;
             let buffers = &mut Buffers::default();
-            return linear::build(root.references(), numbers, depth, rules.max_leaf_size, watch, buffers);
+            return linear::build(root.references(), codes, depth, rules.max_leaf_size, watch, buffers);
         }
         Pace::Stop => return Subtree::with_capacity(0, 0),
     }

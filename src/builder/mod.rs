@@ -301,7 +301,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         let layout = L::lay_out(&mut tree, primitives, &mut workspace.layout);
         workspace.build.reclaim(tree);
         let mut layout = layout.ok_or(BuildError::TooLarge)?;
-        if !workspace.layout.is_kept {
+        if !workspace.layout.is_reused {
             layout.shrink();
         }
         Ok((layout, skipped))

@@ -70,10 +70,10 @@ impl<S: Scalar> Workspace<S> {
     pub(super) fn make_room(&mut self, bytes: usize, later: usize) {
         // What a build that failed has left.
         self.hand_over();
-        let len = |bytes: usize| (bytes.div_ceil(size_of::<PrimRef<S>>()) + 1) & !1;
+        let len = |bytes: usize| bytes.div_ceil(size_of::<PrimRef<S>>());
         let kept: Vec<PrimRef<S>> = recast(self.layout.take_words());
-        self.layout.is_kept = kept.capacity() > 0 && kept.capacity() >= len(bytes);
-        self.build.references = if self.layout.is_kept { kept } else { new_memory(len(bytes.max(later))) };
+        self.layout.is_reused = kept.capacity() > 0 && kept.capacity() >= len(bytes);
+        self.build.references = if self.layout.is_reused { kept } else { new_memory(len(bytes.max(later))) };
     }
 
     /// References are not needed any more: what they lie in is memory for blocks.

@@ -11,8 +11,8 @@ use core::mem::take;
 #[derive(Default)]
 pub struct Buffers {
     words: Vec<Word>,
-    /// What was left by hierarchies, of many sizes; else made for the next one, and freed or shrunk behind it.
-    pub(crate) is_kept: bool,
+    /// Whether the words were left by an earlier hierarchy; else they are new, and cut to size behind the one that is made in them.
+    pub(crate) is_reused: bool,
     /// A vector, of what depends on the layout's width.
     weights: Option<Box<dyn Any + Send + Sync>>,
     weights_bytes: usize,
@@ -26,12 +26,15 @@ impl Buffers {
 
     /// Empty memory for so many words.
     pub(super) fn words_for(&mut self, len: usize) -> Vec<Word> {
-        if self.is_kept {
+        if self.is_reused {
             return fitting(&mut self.words, len);
         }
-        Some(self.take_words())
-            .filter(|words| words.capacity() >= len)
-            .unwrap_or_else(|| Vec::with_capacity(len))
+        let words = self.take_words();
+        if words.capacity() >= len {
+            return words;
+        }
+        drop(words);
+        Vec::with_capacity(len)
     }
 
     /// Takes over the memory of blocks, if it is more.

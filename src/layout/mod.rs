@@ -169,12 +169,12 @@ where
     /// Where operands have to be gathered first, each counts.
     const BLOCK_SIZE: usize = if F::COPIES && <P::Leaf as Leaf<_, _>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
     const RUNS: usize = N;
-    /// For leaves of five primitives, and nodes whose children have two each: a fifth more than trees of splits take, and what they do
-    /// not need goes back.
+    /// For leaves of five primitives, and nodes whose children have eight each: what trees of splits take at the most in the README's
+    /// scenes. What is not needed goes back.
     const RESERVE: usize = if <Self as Layout<P>>::BLOCK_SIZE > 1 {
         let leaf = <P::Leaf as Leaf<_, P::Payload>>::OPERANDS * size_of::<[P::Scalar; LEAF_WIDTH]>()
             + size_of::<[u32; LEAF_WIDTH]>();
-        leaf / 5 + size_of::<F::Node>() / (2 * N)
+        leaf / 5 + size_of::<F::Node>() / (8 * N)
     } else {
         0
     };

@@ -27,7 +27,7 @@ pub use clustered::Clustered;
 pub use median::Median;
 pub use midpoint::Midpoint;
 pub use morton::Morton;
-pub(super) use morton::codes;
+pub(super) use morton::{codes, new_codes};
 pub(crate) use proposal::{Own, Proposal};
 pub use sah::SahCost;
 pub use spatial_sah::SpatialSah;

@@ -24,9 +24,7 @@ const BITS: u32 = 16;
 
 impl<S: Scalar> Heuristic<S> for Morton {
     fn codes(&self, references: &[PrimRef<S>], scene: &Aabb<S>) -> Option<Vec<u64>> {
-        let mut numbers = vec![0; references.len()];
-        codes(references, scene, &mut numbers);
-        Some(numbers)
+        Some(new_codes(references, scene))
     }
 
     /// Of a heuristic that asks this one but does not pass its codes on: equal halves.
@@ -35,7 +33,14 @@ impl<S: Scalar> Heuristic<S> for Morton {
     }
 }
 
-/// Writes each reference's place on the curve through a box.
+/// Each reference's place on the curve through a box.
+pub(in crate::build) fn new_codes<S: Scalar>(references: &[PrimRef<S>], scene: &Aabb<S>) -> Vec<u64> {
+    let mut numbers = vec![0; references.len()];
+    codes(references, scene, &mut numbers);
+    numbers
+}
+
+/// The same in memory for as many.
 pub(in crate::build) fn codes<S: Scalar>(references: &[PrimRef<S>], scene: &Aabb<S>, codes: &mut [u64]) {
     let parts = references.chunks(TASK_SIZE).zip(codes.chunks_mut(TASK_SIZE));
     parallel::map(parts.collect(), |(references, codes)| {
