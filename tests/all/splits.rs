@@ -1,11 +1,8 @@
 //! The driver's word to heuristics: what they are shown, and how their proposals are carried out.
 
-#[path = "common/hostile.rs"]
-mod hostile;
-
+use crate::common::hostile::Hostile;
 use bvhkit::heuristic::{BuildNode, Heuristic, Split};
 use bvhkit::{Aabb, Axis, Bvh, Sphere};
-use hostile::Hostile;
 use std::sync::Mutex;
 
 /// Spheres at these x.

@@ -1,34 +1,20 @@
 //! Every layout, on every instruction set, answers as the naive loop does, bit for bit: for soups, rays, heuristics and
 //! leaf sizes of every kind that is hard, in every mode, for primitives of one's own and for pointers to unlike ones.
 
-mod common {
-    pub mod alone;
-    pub mod answers;
-    pub mod at_hits;
-    pub mod heuristics;
-    pub mod hostile;
-    pub mod modes;
-    pub mod naive;
-    pub mod soups;
-}
-mod generate {
-    pub mod primitives;
-}
-
+use crate::common::alone::Alone;
+use crate::common::answers::{Key, Payload, key};
+use crate::common::at_hits::at_hits;
+use crate::common::heuristics;
+use crate::common::modes::Mode;
+use crate::common::naive::Naive;
+use crate::common::soups::{self, KINDS};
+use crate::generate::primitives::{Corners, boxes, discs, spheres, triangles};
 use bvhkit::heuristic::Heuristic;
 use bvhkit::{
     Aabb, Barycentrics, Builder, Bvh, CompactTree, Fast, InstructionSet, Intersect, Lanes, Leaf, OnInvalid,
     OneByOne, Operands, Precise, PreparedRay, Primitive, Quality, Ray, Scalar, Sphere, Traverse, Tree,
     Triangle, Watertight, WatertightLeaf, WideTree, reference,
 };
-use common::alone::Alone;
-use common::answers::{Key, Payload, key};
-use common::at_hits::at_hits;
-use common::heuristics;
-use common::modes::Mode;
-use common::naive::Naive;
-use common::soups::{self, KINDS};
-use generate::primitives::{Corners, boxes, discs, spheres, triangles};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::fmt;

@@ -1,9 +1,6 @@
 //! The public face as a user meets it: what compiles, what is lazy, what the counters mean.
 
-#[path = "common/alone.rs"]
-mod alone;
-
-use alone::Alone;
+use crate::common::alone::Alone;
 use bvhkit::heuristic::{BinnedSah, Heuristic, Median, SweepSah};
 use bvhkit::{
     Aabb, Barycentrics, BuildError, Builder, Bvh, Counters, Hits, InstructionSet, Intersect, OneByOne,

@@ -3,20 +3,12 @@
 //! The folder is that in `BVHKIT_SCENES`, or `../shared/scenes` beside the crate. Without it the tests
 //! pass and say so.
 
-mod common {
-    pub mod answers;
-    pub mod rays;
-}
-#[path = "../examples/path_tracer/scene/mod.rs"]
-#[expect(dead_code, reason = "the renderer's half of the loader")]
-mod scene;
-
+use crate::common::answers::{Answers, key};
+use crate::common::rays::Aims;
+use crate::scene::{self, Shape};
 use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, SweepSah};
 use bvhkit::{Bvh, reference};
-use common::answers::{Answers, key};
-use common::rays::Aims;
 use rayon::prelude::*;
-use scene::Shape;
 use std::path::PathBuf;
 
 /// The files and their numbers of triangles and spheres.

@@ -1,22 +1,11 @@
 //! The extremes of rays: origins, directions and intervals, in every mode of testing a triangle.
 
-mod common {
-    pub mod agreement;
-    pub mod aimed;
-    pub mod answers;
-    pub mod heuristics;
-    pub mod hostile;
-    pub mod in_every_mode;
-    pub mod modes;
-    pub mod naive;
-}
-
+use crate::common::agreement::assert_agreement;
+use crate::common::aimed::{aimed, soup, triangles};
+use crate::common::answers::key;
+use crate::common::in_every_mode::in_every_mode;
+use crate::common::modes::Mode;
 use bvhkit::{Aabb, Bvh, Counters, Ray, RayError, Scalar, Sphere, Triangle};
-use common::agreement::assert_agreement;
-use common::aimed::{aimed, soup, triangles};
-use common::answers::key;
-use common::in_every_mode::in_every_mode;
-use common::modes::Mode;
 
 fn point<S: Scalar>(point: [f64; 3]) -> [S; 3] {
     point.map(S::from_f64)

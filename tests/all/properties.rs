@@ -2,32 +2,16 @@
 //!
 //! `PROPTEST_CASES` sets the number of scenes for each property.
 
-mod common {
-    pub mod agreement;
-    pub mod answers;
-    pub mod at_hits;
-    pub mod heuristics;
-    pub mod hostile;
-    pub mod modes;
-    pub mod naive;
-}
-mod generate {
-    pub mod numbers;
-    pub mod primitives;
-    pub mod rays;
-    pub mod scenes;
-}
-
+use crate::common::agreement::assert_agreement;
+use crate::common::answers::Payload;
+use crate::common::at_hits::at_hits;
+use crate::common::modes::Mode;
+use crate::generate::primitives::{Corners, boxes, discs, spheres, triangles};
+use crate::generate::rays::{Aim, aims};
+use crate::generate::scenes::soup;
 use bvhkit::{
     Barycentrics, Fast, Intersect, Precise, Scalar, Triangle, TriangleMesh, Watertight, WatertightLeaf,
 };
-use common::agreement::assert_agreement;
-use common::answers::Payload;
-use common::at_hits::at_hits;
-use common::modes::Mode;
-use generate::primitives::{Corners, boxes, discs, spheres, triangles};
-use generate::rays::{Aim, aims};
-use generate::scenes::soup;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;

@@ -4,19 +4,11 @@
 //! origins and directions are small whole numbers, so that the rounded test sees every edge, corner
 //! and coplanar face exactly, and only t is rounded.
 
-mod common {
-    pub mod heuristics;
-    pub mod hostile;
-    pub mod in_every_mode;
-    pub mod integers;
-    pub mod modes;
-}
-
+use crate::common::heuristics;
+use crate::common::in_every_mode::in_every_mode;
+use crate::common::integers::{self, Point, assert_exact, exact_t, sub};
+use crate::common::modes::Mode;
 use bvhkit::{Bvh, Ray, Scalar};
-use common::heuristics;
-use common::in_every_mode::in_every_mode;
-use common::integers::{self, Point, assert_exact, exact_t, sub};
-use common::modes::Mode;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

@@ -1,20 +1,13 @@
 //! Builds that a careless driver would not survive: hostile heuristics, equal primitives, too many.
 
-mod common {
-    pub mod heuristics;
-    pub mod hostile;
-    pub mod in_every_mode;
-    pub mod modes;
-}
-
+use crate::common::heuristics;
+use crate::common::in_every_mode::in_every_mode;
+use crate::common::modes::Mode;
 use bvhkit::heuristic::{BinnedSah, BuildNode, Heuristic, Median, Midpoint, Split, SweepSah};
 use bvhkit::{
     Aabb, Axis, BuildError, Bvh, Intersect, MAX_DEPTH, OneByOne, PreparedRay, Primitive, Quality, Ray,
     Scalar, Sphere, Traverse, Tree, Triangle, reference,
 };
-use common::heuristics;
-use common::in_every_mode::in_every_mode;
-use common::modes::Mode;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Concentric or, if all are equally large, identical.

@@ -1,12 +1,7 @@
 //! The compact layout: few bytes, and boxes of any size.
 
-mod common {
-    pub mod answers;
-    pub mod naive;
-}
-
+use crate::common::naive::Naive;
 use bvhkit::{Aabb, Bvh, CompactTree, Ray, Scalar, Triangle};
-use common::naive::Naive;
 
 /// A height field of twice `size * size` triangles.
 fn terrain(size: usize) -> Vec<Triangle> {

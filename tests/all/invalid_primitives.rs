@@ -1,22 +1,11 @@
 //! Primitives that are no place in space, and primitives that are no surface.
 
-mod common {
-    pub mod agreement;
-    pub mod aimed;
-    pub mod answers;
-    pub mod heuristics;
-    pub mod hostile;
-    pub mod in_every_mode;
-    pub mod modes;
-    pub mod naive;
-}
-
+use crate::common::agreement::assert_agreement;
+use crate::common::aimed::{aimed, soup, triangles};
+use crate::common::answers::{Answers, Payload};
+use crate::common::in_every_mode::in_every_mode;
+use crate::common::modes::Mode;
 use bvhkit::{Aabb, BuildError, Bvh, Flaw, Intersect, OnInvalid, Primitive, Ray, Scalar, Sphere, Triangle};
-use common::agreement::assert_agreement;
-use common::aimed::{aimed, soup, triangles};
-use common::answers::{Answers, Payload};
-use common::in_every_mode::in_every_mode;
-use common::modes::Mode;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

@@ -5,21 +5,15 @@
 //! BVHKIT_RAYS=100000000 cargo test --release --test many_rays -- --nocapture --test-threads 1
 //! ```
 
-mod common {
-    pub mod answers;
-    pub mod modes;
-    pub mod soups;
-    pub mod textbook;
-}
-#[path = "support/closed.rs"]
+#[path = "../support/closed.rs"]
 mod closed;
 
+use crate::common::answers::Answers;
+use crate::common::modes::Mode;
+use crate::common::soups::{self, KINDS, soup};
+use crate::common::textbook::Textbook;
 use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, SweepSah};
 use bvhkit::{Bvh, Fast, Intersect, Precise, Ray, Scalar, Triangle, Watertight};
-use common::answers::Answers;
-use common::modes::Mode;
-use common::soups::{self, KINDS, soup};
-use common::textbook::Textbook;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;

@@ -18,24 +18,12 @@
 //! | more primitives than indices | `hostile.rs`: `more_primitives_than_indices*` |
 //! | `max_leaf_size` 0 or huge | `hostile.rs`: `a_leaf_size_of_zero_*` |
 
-mod common {
-    pub mod agreement;
-    pub mod aimed;
-    pub mod answers;
-    pub mod heuristics;
-    pub mod hostile;
-    pub mod in_every_mode;
-    pub mod modes;
-    pub mod naive;
-    pub mod range;
-}
-
+use crate::common::agreement::assert_agreement;
+use crate::common::aimed::{aimed, soup, triangles};
+use crate::common::in_every_mode::in_every_mode;
+use crate::common::modes::Mode;
+use crate::common::range::Range;
 use bvhkit::{Aabb, Bvh, Ray, Scalar, Sphere, Triangle};
-use common::agreement::assert_agreement;
-use common::aimed::{aimed, soup, triangles};
-use common::in_every_mode::in_every_mode;
-use common::modes::Mode;
-use common::range::Range;
 
 /// The triangles in a mode agree with the naive loop; returns the number of hits.
 fn agreement<M: Mode>(triangles: &[Triangle<M::Number>]) -> usize {

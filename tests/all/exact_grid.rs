@@ -1,14 +1,9 @@
 //! Every triangle with corners on a small grid, every ray between its points along {-1, -0, +0, 1}^3, in every mode,
 //! against exact arithmetic in integers: edges, corners, coplanar faces and triangles without area by the thousand.
 
-mod common {
-    pub mod integers;
-    pub mod modes;
-}
-
+use crate::common::integers::{self, Point, assert_exact, exact_t};
+use crate::common::modes::Mode;
 use bvhkit::{Bvh, Fast, Precise, Ray, Scalar, Triangle, Watertight};
-use common::integers::{self, Point, assert_exact, exact_t};
-use common::modes::Mode;
 
 fn grid(range: std::ops::Range<i32>) -> Vec<Point> {
     let all = || range.clone();

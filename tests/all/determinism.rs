@@ -1,13 +1,7 @@
 //! The same tree on any number of threads, and twice on the same.
 
-mod common {
-    pub mod heuristics;
-    pub mod hostile;
-    pub mod scattered;
-}
-
+use crate::common::{heuristics, scattered};
 use bvhkit::{Bvh, Quality, Scalar, Tree, Triangle};
-use common::{heuristics, scattered};
 
 /// A third with whole coordinates, a third copies: ties wherever a build could break them by chance.
 fn with_ties<S: Scalar>(n: usize) -> Vec<Triangle<S>> {

@@ -1,14 +1,9 @@
 //! The exact oracle against a second method in another implementation of big numbers.
 
-mod common {
-    pub mod aimed;
-    pub mod rational;
-}
-
+use crate::common::aimed::{aimed, soup, triangles};
+use crate::common::rational::{self, Meeting, is_nearest, spacing};
 use bvhkit::reference::exact::{self, ExactHit, Fraction};
 use bvhkit::{Ray, Scalar, Triangle};
-use common::aimed::{aimed, soup, triangles};
-use common::rational::{self, Meeting, is_nearest, spacing};
 use num_rational::BigRational;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};

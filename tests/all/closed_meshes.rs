@@ -1,17 +1,10 @@
 //! No leak: a ray from inside a closed mesh hits it, at every corner and edge, whatever the size, the
 //! place and the company of the mesh. In the modes that promise it; the fast one agrees with itself.
 
-mod common {
-    pub mod answers;
-    pub mod closed;
-    pub mod modes;
-    pub mod range;
-}
-
+use crate::common::answers::{Answers, key};
+use crate::common::closed::{Closed, sphere, torus};
+use crate::common::range::Range;
 use bvhkit::{Bvh, Fast, Precise, Ray, Scalar, Triangle, Watertight};
-use common::answers::{Answers, key};
-use common::closed::{Closed, sphere, torus};
-use common::range::Range;
 
 /// Powers of two by which directions are multiplied: the aim stays what it is.
 const LENGTHS: [i32; 3] = [-40, 0, 12];

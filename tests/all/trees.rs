@@ -1,16 +1,11 @@
 //! What is done to trees beside splitting: reinsertion, references in several leaves, builds in a hurry.
 
-mod common {
-    pub mod heuristics;
-    pub mod hostile;
-}
-
+use crate::common::heuristics;
 use bvhkit::heuristic::{BinnedSah, BuildNode, Clustered, Heuristic, Median, Morton, SpatialSah, Split};
 use bvhkit::{
     Aabb, Axis, BuildError, Bvh, Fast, Hit, MAX_DEPTH, Optimise, Pace, PrimRef, Quality, Ray, Tree, Triangle,
     reference,
 };
-use common::heuristics;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};

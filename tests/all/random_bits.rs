@@ -1,18 +1,11 @@
 //! Arbitrary bytes as scene, rays and options: never a panic, always the naive answer.
 
-mod common {
-    pub mod answers;
-    pub mod heuristics;
-    pub mod hostile;
-    pub mod modes;
-}
-
+use crate::common::answers::{Answers, Payload};
+use crate::common::heuristics;
+use crate::common::modes::Mode;
 use bvhkit::{
     Aabb, BuildError, Bvh, Fast, Intersect, OnInvalid, Precise, Ray, Scalar, Sphere, Triangle, Watertight,
 };
-use common::answers::{Answers, Payload};
-use common::heuristics;
-use common::modes::Mode;
 use proptest::prelude::*;
 
 /// Numbers out of bytes; zeros when they run out.
