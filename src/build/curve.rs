@@ -23,7 +23,9 @@ impl<'m> Curve<'m> {
     /// places take. `spare` is memory for as many, and the keys lie in one of the two.
     pub fn new(codes: &'m mut [u64], spare: &'m mut [u64], bits: usize) -> Self {
         let place_bits = usize::BITS - (codes.len() - 1).leading_zeros();
-        let code_bits = u64::BITS - codes.iter().fold(0, |all, code| all | code).leading_zeros();
+        let any = |codes: &[u64]| codes.iter().fold(0, |all, code| all | code);
+        let all = any(&parallel::map(codes.chunks(TASK_SIZE).collect(), any));
+        let code_bits = u64::BITS - all.leading_zeros();
         let lost = (code_bits + place_bits).saturating_sub(bits as u32);
         let parts = codes.chunks_mut(TASK_SIZE).zip((0..).step_by(TASK_SIZE));
         parallel::map(parts.collect(), |(codes, first)| {

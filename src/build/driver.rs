@@ -109,7 +109,7 @@ fn build_by_splits<S: Scalar, H: Heuristic<S> + ?Sized>(
     let len = references.len();
     // Slots have 32 bits.
     let most = len.saturating_add(rules.heuristic.spare(len)).min(u32::MAX as usize);
-    references.resize(most, PrimRef::new(Aabb::EMPTY, u32::MAX));
+    parallel::extend_to(references, most, PrimRef::new(Aabb::EMPTY, u32::MAX));
     let build = Build { rules, watch, scene: aabb };
     let root = Set { memory: references, len, aabb, depth: 0 };
     let (top, tasks) = build_top(OpenNode { set: root, parent: None }, &build);

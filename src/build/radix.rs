@@ -1,6 +1,8 @@
 //! Sorting of codes.
 
 use crate::parallel;
+use alloc::vec;
+use alloc::vec::Vec;
 
 /// Bits in a digit: the places of 2,048 digits fit the first cache.
 const DIGIT: u32 = 11;
@@ -13,6 +15,9 @@ const FEW: usize = 256;
 
 /// So many keys go into a bucket, if they are spread evenly: as many as the second cache holds twice.
 const BUCKET: usize = 1 << 15;
+
+/// Keys are put into buckets in so many parts.
+const PARTS: usize = 8;
 
 /// Sorts keys that ascend already as far as they are equal above the bit `low`; there are no bits from `high` on. `spare`
 /// is memory for as many: the sorted keys are in one of the two.
@@ -27,11 +32,9 @@ pub(super) fn sort<'m>(keys: &'m mut [u64], spare: &'m mut [u64], low: u32, high
         return keys;
     }
     let top = high.saturating_sub(bits).max(low);
-    let mut ends = scatter(keys, spare, top);
+    let lens = scatter_in_parts(keys, spare, top, high - top);
     let (mut sources, mut targets) = (&mut *spare, &mut *keys);
-    let mut done = 0;
-    let parts = ends.iter_mut().map(|end| {
-        let len = *end as usize - core::mem::replace(&mut done, *end as usize);
+    let parts = lens.into_iter().map(|len| {
         let (source, rest) = core::mem::take(&mut sources).split_at_mut(len);
         sources = rest;
         let (target, rest) = core::mem::take(&mut targets).split_at_mut(len);
@@ -65,8 +68,39 @@ fn sort_bucket(bucket: &mut [u64], spare: &mut [u64], low: u32, high: u32) {
     }
 }
 
-/// Copies keys in the order of the digit above a bit, equal ones in their own; tells where each digit's keys end.
-fn scatter(keys: &[u64], sorted: &mut [u64], shift: u32) -> [u32; 1 << DIGIT] {
+/// Copies keys in the order of their `bits` from one up, equal ones in their own; tells how many there are of each.
+///
+/// Parts of the keys at the same time: each has its own places among those of equal keys.
+fn scatter_in_parts(keys: &[u64], mut sorted: &mut [u64], low: u32, bits: u32) -> Vec<usize> {
+    let digit = |key: u64| (key >> low) as usize & ((1 << bits) - 1);
+    let parts: Vec<_> = keys.chunks(keys.len().div_ceil(PARTS)).collect();
+    let counts = parallel::map(parts.clone(), |part| {
+        let mut counts = vec![0usize; 1 << bits];
+        part.iter().for_each(|&key| counts[digit(key)] += 1);
+        counts
+    });
+    let mut places: Vec<Vec<&mut [u64]>> = parts.iter().map(|_| Vec::with_capacity(1 << bits)).collect();
+    for digit in 0..1 << bits {
+        for (counts, places) in counts.iter().zip(&mut places) {
+            let (part, rest) = core::mem::take(&mut sorted).split_at_mut(counts[digit]);
+            places.push(part);
+            sorted = rest;
+        }
+    }
+    parallel::map(parts.into_iter().zip(places).collect(), |(part, mut places): (&[u64], Vec<_>)| {
+        for &key in part {
+            let places = &mut places[digit(key)];
+            if let Some((place, rest)) = core::mem::take(places).split_first_mut() {
+                *place = key;
+                *places = rest;
+            }
+        }
+    });
+    (0..1 << bits).map(|digit| counts.iter().map(|counts| counts[digit]).sum()).collect()
+}
+
+/// Copies keys in the order of the digit above a bit, equal ones in their own.
+fn scatter(keys: &[u64], sorted: &mut [u64], shift: u32) {
     let digit = |key: u64| (key >> shift) as usize & ((1 << DIGIT) - 1);
     let mut places = [0u32; 1 << DIGIT];
     for &key in keys {
@@ -81,14 +115,11 @@ fn scatter(keys: &[u64], sorted: &mut [u64], shift: u32) -> [u32; 1 << DIGIT] {
         sorted[*place as usize] = key;
         *place += 1;
     }
-    places
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use alloc::vec;
-    use alloc::vec::Vec;
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 

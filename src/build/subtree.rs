@@ -92,14 +92,16 @@ pub(super) fn join<S: Scalar>(
 ) -> Subtree<S> {
     // Which nodes and slots follow one another, and by how much those of subtrees move.
     let (mut nodes, mut slots) = (Vec::<(Range<usize>, Option<usize>, Move)>::new(), Vec::<&[u32]>::new());
-    let mut runs = fitting(&mut buffers.runs, subtrees.iter().map(|piece| piece.runs.len()).sum());
+    let mut runs = Vec::<(&[Run<S>], Move)>::new();
     let mut end = Move { node: 0, slot: 0 };
     let mut open = vec![(None, top.root)];
     while let Some((parent, child)) = open.pop() {
         let moved = if let Some(task) = task_of(child, &top) {
             let Piece { nodes: inner, root, indices, runs: parts } = subtrees[task];
             let root = end.of(root);
-            runs.extend(parts.iter().map(|run| Run { leaf: end.of(run.leaf), ..*run }));
+            if !parts.is_empty() {
+                runs.push((parts, end));
+            }
             nodes.push((0..inner.len(), Some(task), end));
             slots.push(indices);
             end = Move { node: end.node + inner.len() as u32, slot: end.slot + indices.len() as u32 };
@@ -120,6 +122,9 @@ pub(super) fn join<S: Scalar>(
     let slots = slots.into_iter().map(|slots| slots.iter().copied());
     let indices = parallel::concat(slots.collect(), |len| fitting(&mut buffers.indices, len));
     let nodes = parallel::concat(parts.collect(), |len| fitting(&mut buffers.nodes, len));
+    let runs =
+        runs.into_iter().map(|(runs, by)| runs.iter().map(move |run| Run { leaf: by.of(run.leaf), ..*run }));
+    let runs = parallel::concat(runs.collect(), |len| fitting(&mut buffers.runs, len));
     Subtree { nodes, root: top.root, indices, runs }
 }
 

@@ -261,8 +261,9 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         };
         let pace = self.pace();
         let primitives = collect(primitives.into_iter())?;
-        let (layout, skipped) = in_pool(self.threads, || self.lay_out(&primitives, &pace, workspace))
-            .map_err(BuildError::ThreadPool)??;
+        let (layout, skipped) =
+            in_pool(self.threads, primitives.len(), || self.lay_out(&primitives, &pace, workspace))
+                .map_err(BuildError::ThreadPool)??;
         drop(pace);
         Ok(Bvh::from_parts(layout, backend, primitives, skipped))
     }
@@ -293,7 +294,9 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         }
         let optimise = self.optimise.or_else(|| self.heuristic.optimise());
         if let Some(optimise) = optimise.filter(|optimise| optimise.rounds > 0) {
-            optimise.run(&mut tree, || watch.ask() == Pace::Steady);
+            let mut memory = workspace.layout.take_words();
+            optimise.run(&mut tree, &mut memory, || watch.ask() == Pace::Steady);
+            workspace.layout.keep_words(memory);
         }
         if watch.ask() == Pace::Stop {
             return Err(BuildError::Stopped);

@@ -31,17 +31,30 @@ const SECTION: u32 = 1 << 12;
 /// How many blocks ahead primitives are asked for.
 const AHEAD: usize = 4;
 
-/// A place in memory, from the begin of its section on, and what belongs there.
+/// What belongs into memory, one after another. Small: there are as many as nodes and leaves.
 struct Block {
-    offset: usize,
-    what: What,
+    kind: Kind,
+    /// Of the children, sixteen at the most, or of the slots.
+    count: u8,
+    first: u32,
 }
 
-enum What {
-    /// A node with these of the section's children.
-    Node(Range<usize>),
-    /// A leaf with the primitives of these slots.
-    Leaf(Range<usize>),
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// A node, with some of the section's children.
+    Node,
+    /// A leaf, with the primitives of some slots.
+    Leaf,
+}
+
+impl Block {
+    fn new(kind: Kind, range: Range<usize>) -> Self {
+        Self { kind, count: range.len() as u8, first: range.start as u32 }
+    }
+
+    fn range(&self) -> Range<usize> {
+        self.first as usize..self.first as usize + usize::from(self.count)
+    }
 }
 
 /// The top of the tree, or a subtree: where its blocks lie, in the order of the memory.
@@ -92,14 +105,15 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         buffers: &mut Buffers,
     ) -> Option<Self> {
         const { assert!((MAX_DEPTH + 30).div_ceil(N.ilog2() as usize) * (N - 1) <= MAX_PENDING) }
-        let plan = Plan::<S, N>::new(tree, F::leaf_cost(contents.operands()), buffers.weights());
+        let mut words = buffers.take_words();
+        let plan = Plan::<S, N>::new(tree, F::leaf_cost(contents.operands()), &mut words);
         let cheapest = |node, roots: &mut _| plan.cheapest(node, roots);
         let by_levels = |node, roots: &mut _| plan.by_levels(node, roots);
         let arrangement = match Self::arrange(&plan, cheapest, contents) {
             Err(Failure::TooDeep) => Self::arrange(&plan, by_levels, contents),
             other => other,
         };
-        buffers.keep_weights(plan.into_weights());
+        buffers.keep_words(words);
         let Arrangement { sections, root } = arrangement.ok()?;
         let coordinates = [tree.aabb.min, tree.aabb.max];
         Some(Self {
@@ -174,26 +188,27 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         Blocks::filled(memory, &ranges, |number, part| {
             let Section { start, blocks, children, .. } = &sections[number];
             let mut moved = Vec::with_capacity(N);
+            let mut end = 0usize;
             for (place, block) in blocks.iter().enumerate() {
                 // Primitives lie in the input's order: waiting for them took half of the time.
-                if let Some(Block { what: What::Leaf(slots), .. }) = blocks.get(place + AHEAD) {
-                    tree.indices[slots.clone()].iter().for_each(|&index| contents.prefetch(index));
+                if let Some(leaf) = blocks.get(place + AHEAD).filter(|block| block.kind == Kind::Leaf) {
+                    tree.indices[leaf.range()].iter().for_each(|&index| contents.prefetch(index));
                 }
-                match &block.what {
-                    What::Node(range) => {
+                let (bytes, align) = extent::<S, F, N>(block.kind, contents.operands());
+                let offset = end.next_multiple_of(align);
+                end = offset + bytes;
+                match block.kind {
+                    Kind::Node => {
                         moved.clear();
-                        moved.extend(children[range.clone()].iter().map(|&(aabb, child)| {
+                        moved.extend(children[block.range()].iter().map(|&(aabb, child)| {
                             let is_block = F::COPIES || !child.is_leaf();
                             (aabb, if is_block { child.behind(*start) } else { child })
                         }));
                         let node = F::Node::new(&moved);
                         // SAFETY: nodes are plain data without gaps, see `Node`.
-                        unsafe { part.put(block.offset, node) }
+                        unsafe { part.put(offset, node) }
                     }
-                    What::Leaf(slots) => {
-                        let indices = &tree.indices[slots.clone()];
-                        put_leaf(part, block.offset, indices, contents);
-                    }
+                    Kind::Leaf => put_leaf(part, offset, &tree.indices[block.range()], contents),
                 }
             }
         })
@@ -234,8 +249,8 @@ impl<S: Scalar> Section<S> {
             // The child to begin with in the highest lane: from there it is taken first if any hit will do.
             sort_by_area(&roots, plan, &mut keys, &mut sorted);
             let first = self.children.len();
-            let offset =
-                self.allocate(What::Node(first..first + roots.len()), size_of::<F::Node>(), F::Node::ALIGN);
+            let node = Block::new(Kind::Node, first..first + roots.len());
+            let offset = self.push::<F, N>(node, contents.operands());
             if let Some(place) = place {
                 self.children[place].1 = Reference::node(offset);
             }
@@ -256,11 +271,12 @@ impl<S: Scalar> Section<S> {
         Ok(())
     }
 
-    /// A new block behind all others.
-    fn allocate(&mut self, what: What, bytes: usize, align: usize) -> usize {
+    /// A new block behind all others; tells where it lies.
+    fn push<F: Form<S, N>, const N: usize>(&mut self, block: Block, operands: usize) -> usize {
+        let (bytes, align) = extent::<S, F, N>(block.kind, operands);
         let offset = self.bytes.next_multiple_of(align);
         self.bytes = offset + bytes;
-        self.blocks.push(Block { offset, what });
+        self.blocks.push(block);
         offset
     }
 
@@ -273,9 +289,19 @@ impl<S: Scalar> Section<S> {
             return Reference::of_slots(first, count).ok_or(Failure::TooLarge);
         }
         let slots = first as usize..first as usize + count as usize;
-        let bytes = operands * size_of::<[S; LEAF_WIDTH]>() + size_of::<[u32; LEAF_WIDTH]>();
-        let align = if operands > 0 { size_of::<[S; LEAF_WIDTH]>().min(Blocks::ALIGN) } else { 32 };
-        Ok(Reference::leaf(self.allocate(What::Leaf(slots), bytes, align)))
+        Ok(Reference::leaf(self.push::<F, N>(Block::new(Kind::Leaf, slots), operands)))
+    }
+}
+
+/// How many bytes a block takes, and of what its place is a multiple.
+fn extent<S: Scalar, F: Form<S, N>, const N: usize>(kind: Kind, operands: usize) -> (usize, usize) {
+    match kind {
+        Kind::Node => (size_of::<F::Node>(), F::Node::ALIGN),
+        Kind::Leaf => {
+            let bytes = operands * size_of::<[S; LEAF_WIDTH]>() + size_of::<[u32; LEAF_WIDTH]>();
+            let align = if operands > 0 { size_of::<[S; LEAF_WIDTH]>().min(Blocks::ALIGN) } else { 32 };
+            (bytes, align)
+        }
     }
 }
 

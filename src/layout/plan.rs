@@ -18,6 +18,7 @@
 //! the build takes as long.
 
 use crate::geometry::{Aabb, Scalar};
+use crate::memory::{Word, lent};
 use crate::parallel;
 use crate::primitive::LEAF_WIDTH;
 use crate::tree::{Child, MAX_DEPTH, Tree};
@@ -52,7 +53,7 @@ const SUBTREE: usize = 1 << 11;
 pub(super) struct Plan<'t, S, const N: usize> {
     pub tree: &'t Tree<S>,
     /// For each inner node.
-    weights: Vec<Weight<N>>,
+    weights: &'t [Weight<N>],
     /// 1 / the largest extent.
     scale: S,
     leaf: LeafCost,
@@ -70,13 +71,13 @@ pub(super) struct Weight<const N: usize> {
 }
 
 impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
-    /// `weights` is memory, empty.
-    pub fn new(tree: &'t Tree<S>, leaf: LeafCost, mut weights: Vec<Weight<N>>) -> Self {
+    /// In memory in which nothing lies.
+    pub fn new(tree: &'t Tree<S>, leaf: LeafCost, memory: &'t mut Vec<Word>) -> Self {
         let unknown = Weight { forest: [0.0; N], roots: 0, slots: (0, 0) };
-        weights.resize(tree.nodes.len(), unknown);
-        let plan = Self { tree, weights: Vec::new(), scale: tree.aabb.area_scale(), leaf };
+        let weights = lent(memory, tree.nodes.len(), unknown);
+        let plan = Self { tree, weights: &[], scale: tree.aabb.area_scale(), leaf };
         let (top, subtrees) = plan.divide();
-        let (mut parts, mut rest, mut done) = (Vec::with_capacity(subtrees.len()), weights.as_mut_slice(), 0);
+        let (mut parts, mut rest, mut done) = (Vec::with_capacity(subtrees.len()), &mut *weights, 0);
         for nodes in subtrees {
             let (part, behind) = rest[nodes.start - done..].split_at_mut(nodes.len());
             parts.push((nodes.start, part));
@@ -94,11 +95,6 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
             until[index] = plan.weight(index, below);
         }
         Self { weights, ..plan }
-    }
-
-    /// The memory.
-    pub fn into_weights(self) -> Vec<Weight<N>> {
-        self.weights
     }
 
     /// The nodes of large subtrees, and the small subtrees below them, in the order of the nodes.

@@ -138,7 +138,7 @@ impl<S: Scalar> Tree<S> {
     /// # Ok::<(), bvhkit::BuildError>(())
     /// ```
     pub fn optimise(&mut self, optimise: &Optimise) -> Gain {
-        optimise.run(self, || true)
+        optimise.run(self, &mut Vec::new(), || true)
     }
 
     /// Its shape and estimated cost.

@@ -2,13 +2,14 @@
 
 use super::search::Move;
 use crate::geometry::{Aabb, Scalar};
+use crate::memory::{Word, lent};
 use crate::tree::{Child, MAX_DEPTH, Node, Run, Tree};
 use alloc::vec::Vec;
 use core::mem::take;
 
 /// A tree whose nodes, inner ones first, then leaves, know their parents, boxes and heights.
-pub(super) struct Linked<S> {
-    nodes: Vec<LinkedNode<S>>,
+pub(super) struct Linked<'m, S> {
+    nodes: &'m mut [LinkedNode<S>],
     /// Of inner nodes.
     children: Vec<[u32; 2]>,
     /// Slots of leaves.
@@ -25,19 +26,19 @@ struct LinkedNode<S> {
     height: u32,
 }
 
-impl<S: Scalar> Linked<S> {
+impl<'m, S: Scalar> Linked<'m, S> {
     /// The root, an inner node.
     pub const ROOT: u32 = 0;
 
-    /// None if there are fewer than three leaves: nothing could be moved.
-    pub fn new(tree: &Tree<S>) -> Option<Self> {
+    /// In memory in which nothing lies. None if there are fewer than three leaves: nothing could be moved.
+    pub fn new(tree: &Tree<S>, memory: &'m mut Vec<Word>) -> Option<Self> {
         let inner = tree.nodes.len();
         if inner < 2 {
             return None;
         }
         let unknown = LinkedNode { aabb: tree.aabb, parent: u32::MAX, height: 0 };
         let mut linked = Self {
-            nodes: alloc::vec![unknown; 2 * inner + 1],
+            nodes: lent(memory, 2 * inner + 1, unknown),
             children: Vec::with_capacity(inner),
             leaves: Vec::with_capacity(inner + 1),
             scale: tree.aabb.area_scale(),
@@ -225,9 +226,10 @@ mod tests {
     fn no_move_makes_a_circle_or_too_long_a_path() {
         let spheres = (0..100u8).map(|i| Sphere::new([f32::from(i), 0.0, 0.0], 0.5));
         let builder = Bvh::builder().heuristic(Chains).max_leaf_size(1).layout::<Tree>();
-        let mut linked = Linked::new(builder.build(spheres).unwrap().layout()).unwrap();
-        let depth = |linked: &Linked<f32>, node| linked.depth_outside(node, u32::MAX).unwrap();
-        let mut apply = |node: fn(&Linked<f32>) -> u32| {
+        let (bvh, mut memory) = (builder.build(spheres).unwrap(), Vec::new());
+        let mut linked = Linked::new(bvh.layout(), &mut memory).unwrap();
+        let depth = |linked: &Linked<'_, f32>, node| linked.depth_outside(node, u32::MAX).unwrap();
+        let mut apply = |node: fn(&Linked<'_, f32>) -> u32| {
             let mut touched = alloc::vec![false; linked.len()];
             let leaves = linked.children.len() as u32..linked.len() as u32;
             let below_right =
@@ -236,9 +238,9 @@ mod tests {
             let moved = linked.apply(&Move { node: node(&linked), beside, gain: 1.0 }, &mut touched);
             (moved, linked.nodes[0].height as usize, depth(&linked, beside))
         };
-        let right_chain = |linked: &Linked<f32>| linked.children[linked.children[0][1] as usize][1];
+        let right_chain = |linked: &Linked<'_, f32>| linked.children[linked.children[0][1] as usize][1];
         assert!(!apply(right_chain).0, "the end of the right chain is below it");
-        let second_of_the_left = |linked: &Linked<f32>| {
+        let second_of_the_left = |linked: &Linked<'_, f32>| {
             let left = linked.children[0][0] as usize;
             linked.children[linked.children[left][1] as usize][0]
         };

@@ -8,6 +8,7 @@ mod linked;
 mod search;
 
 use crate::geometry::Scalar;
+use crate::memory::Word;
 use crate::parallel;
 use crate::tree::Tree;
 use alloc::collections::BinaryHeap;
@@ -61,9 +62,14 @@ pub struct Gain {
 }
 
 impl Optimise {
-    /// The tree, made better for as long as `goes_on` says so.
-    pub(crate) fn run<S: Scalar>(&self, tree: &mut Tree<S>, goes_on: impl Fn() -> bool + Sync) -> Gain {
-        let Some(mut linked) = Linked::new(tree) else { return Gain::default() };
+    /// The tree, made better for as long as `goes_on` says so, in memory in which nothing lies.
+    pub(crate) fn run<S: Scalar>(
+        &self,
+        tree: &mut Tree<S>,
+        memory: &mut Vec<Word>,
+        goes_on: impl Fn() -> bool + Sync,
+    ) -> Gain {
+        let Some(mut linked) = Linked::new(tree, memory) else { return Gain::default() };
         let before = linked.cost();
         let count = (linked.len() as f64 * self.share.clamp(0.0, 1.0)) as usize;
         let mut candidates = largest(&linked, count);
@@ -91,7 +97,7 @@ impl Optimise {
 
 /// Takes candidates out and puts them where they cost least. Tells how many were moved.
 fn round<S: Scalar>(
-    linked: &mut Linked<S>,
+    linked: &mut Linked<'_, S>,
     candidates: &mut [Candidate],
     goes_on: &(impl Fn() -> bool + Sync),
 ) -> usize {
@@ -131,7 +137,7 @@ impl Candidate {
         Self { node, rest: 0, pause: 0 }
     }
 
-    fn best_move<S: Scalar>(&mut self, linked: &Linked<S>, open: &mut Vec<(S, u32)>) -> Option<Move<S>> {
+    fn best_move<S: Scalar>(&mut self, linked: &Linked<'_, S>, open: &mut Vec<(S, u32)>) -> Option<Move<S>> {
         if self.rest > 0 {
             self.rest -= 1;
             return None;
@@ -168,7 +174,7 @@ impl<S: Scalar> PartialEq for Sized<S> {
 impl<S: Scalar> Eq for Sized<S> {}
 
 /// The nodes of the largest areas, from the root down: a child is never larger than its parent.
-fn largest<S: Scalar>(linked: &Linked<S>, count: usize) -> Vec<Candidate> {
+fn largest<S: Scalar>(linked: &Linked<'_, S>, count: usize) -> Vec<Candidate> {
     let mut largest = Vec::with_capacity(count);
     let mut open = BinaryHeap::new();
     let show = |node: u32, open: &mut BinaryHeap<_>| {
@@ -196,7 +202,8 @@ mod tests {
     fn a_node_in_its_best_place_is_asked_ever_more_rarely() {
         let spheres = (0..8u8).map(|i| Sphere::new([f32::from(i), 0.0, 0.0], 0.1));
         let builder = Bvh::builder().optimise(Optimise::NONE).max_leaf_size(1).layout::<Tree>();
-        let linked = Linked::new(builder.build(spheres).unwrap().layout()).unwrap();
+        let (bvh, mut memory) = (builder.build(spheres).unwrap(), Vec::new());
+        let linked = Linked::new(bvh.layout(), &mut memory).unwrap();
         let mut candidates = largest(&linked, linked.len());
         assert_eq!(candidates.len(), linked.len() - 1, "all but the root");
         let mut asked = Vec::new();

@@ -24,7 +24,7 @@ const MOST_PLACES: usize = 48;
 /// the way, and a place costs at least the node's own area; where that is no more than what was found, nothing below is
 /// looked at. `open` is memory, empty before and after.
 pub(super) fn best_move<S: Scalar>(
-    linked: &Linked<S>,
+    linked: &Linked<'_, S>,
     node: u32,
     open: &mut Vec<(S, u32)>,
 ) -> Option<Move<S>> {

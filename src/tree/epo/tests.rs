@@ -175,7 +175,7 @@ fn neither_the_number_of_threads_nor_the_unit_of_length_changes_a_bit() {
     let epo = |scale: i32, threads| {
         let soup = scaled(2f64.powi(scale));
         let builder = Bvh::builder().heuristic(Median).layout::<Tree<f64>>();
-        in_pool(Some(threads), || builder.build(soup).unwrap().epo()).unwrap()
+        in_pool(Some(threads), soup.len(), || builder.build(soup).unwrap().epo()).unwrap()
     };
     let expected = epo(0, 1);
     assert!(expected > 1.0);
