@@ -2,7 +2,6 @@
 //! `portable`: plain code for sixteen lanes takes long to compile.
 #![cfg(feature = "portable")]
 
-#[path = "all/common"]
 mod common {
     pub mod answers;
     pub mod naive;

@@ -2,7 +2,6 @@
 
 #[path = "../benches/builds/memory.rs"]
 mod memory;
-#[path = "all/common"]
 mod common {
     pub mod heuristics;
     pub mod hostile;

@@ -1,6 +1,0 @@
-//! Proptest's strategies.
-
-pub mod numbers;
-pub mod primitives;
-pub mod rays;
-pub mod scenes;
