@@ -11,7 +11,6 @@ use crate::geometry::Scalar;
 use crate::memory::Word;
 use crate::parallel;
 use crate::tree::Tree;
-use alloc::collections::BinaryHeap;
 use alloc::vec::Vec;
 use core::cmp::{Ordering, Reverse};
 use linked::Linked;
@@ -149,54 +148,60 @@ impl Candidate {
     }
 }
 
-/// A node with its area, ordered by it.
-struct Sized<S>(S, u32);
-
-impl<S: Scalar> Ord for Sized<S> {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let key = |sized: &Self| (sized.0.to_ordered_bits(), Reverse(sized.1));
-        key(self).cmp(&key(other))
-    }
-}
-
-impl<S: Scalar> PartialOrd for Sized<S> {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl<S: Scalar> PartialEq for Sized<S> {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl<S: Scalar> Eq for Sized<S> {}
-
-/// The nodes of the largest areas, from the root down: a child is never larger than its parent.
+/// The nodes of the largest areas but the root, of equal ones the first, in no order. A child is never larger than its parent.
+///
+/// From the root down, by the first bits of their areas, and exactly only where the last are to be told apart: by a heap of all
+/// that may be next it took two to three times as long (5.3 ms instead of 1.7 of 290, a tenth of a million triangles' nodes).
 fn largest<S: Scalar>(linked: &Linked<'_, S>, count: usize) -> Vec<Candidate> {
+    const BITS: u32 = 12;
+    let class = |node: u32| ((linked.area(node).to_f64() as f32).to_bits() >> (u32::BITS - BITS)) as usize;
     let mut largest = Vec::with_capacity(count);
-    let mut open = BinaryHeap::new();
-    let show = |node: u32, open: &mut BinaryHeap<_>| {
-        for child in linked.children(node).into_iter().flatten() {
-            open.push(Sized(linked.area(child), child));
+    let mut waiting = alloc::vec![Vec::new(); 1 << BITS];
+    waiting[(1 << BITS) - 1].push(Linked::<S>::ROOT);
+    for now in (0..1 << BITS).rev() {
+        let others = largest.len();
+        while let Some(node) = waiting[now].pop() {
+            if node != Linked::<S>::ROOT {
+                largest.push(node);
+            }
+            for child in linked.children(node).into_iter().flatten() {
+                waiting[class(child).min(now)].push(child);
+            }
         }
-    };
-    show(Linked::<S>::ROOT, &mut open);
-    while let Some(Sized(_, node)) = open.pop() {
-        if largest.len() == count {
+        if largest.len() > count {
+            let key = |&node: &u32| (Reverse(linked.area(node).to_ordered_bits()), node);
+            largest[others..].select_nth_unstable_by_key(count - others, key);
+            largest.truncate(count);
             break;
         }
-        largest.push(Candidate::new(node));
-        show(node, &mut open);
     }
-    largest
+    largest.into_iter().map(Candidate::new).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{Bvh, Sphere};
+
+    #[test]
+    fn the_largest_are_taken_and_of_equal_ones_the_first() {
+        // Of some sizes, many alike.
+        let spheres =
+            (0..200u8).map(|i| Sphere::new([f32::from(i), f32::from(i % 7), 0.0], f32::from(i % 3)));
+        let builder = Bvh::builder().optimise(Optimise::NONE).max_leaf_size(1).layout::<Tree>();
+        let (bvh, mut memory) = (builder.build(spheres).unwrap(), Vec::new());
+        let linked = Linked::new(bvh.layout(), &mut memory).unwrap();
+        let mut all: Vec<u32> = (1..linked.len() as u32).collect();
+        all.sort_by(|&a, &b| linked.area(b).total_cmp(&linked.area(a)).then(a.cmp(&b)));
+        for count in 0..=all.len() + 1 {
+            let mut found: Vec<u32> =
+                largest(&linked, count).iter().map(|candidate| candidate.node).collect();
+            let mut expected = all[..count.min(all.len())].to_vec();
+            found.sort_unstable();
+            expected.sort_unstable();
+            assert_eq!(found, expected, "{count}");
+        }
+    }
 
     #[test]
     fn a_node_in_its_best_place_is_asked_ever_more_rarely() {
