@@ -2,9 +2,9 @@
 //!
 //! What is new to a process costs more than what is written to it: systems hand it out page by page, as it is touched, and on a
 //! virtual machine a page took a microsecond or two. So a build touches little of it: references to primitives, keys
-//! behind them, then what optimisation knows of the tree that was made of them, then what the collapse does, and then nodes and
-//! leaves lie in the same memory. It touches a quarter to a third less so (sponza: `Quality::Fast` 5,700 pages instead of 8,400,
-//! `Balanced` 6,900 instead of 10,100).
+//! behind them, then what optimisation knows of the tree that was made of them, then what the collapse knows of it, and then nodes
+//! and leaves lie in the same memory. It touches a quarter to a third less so (sponza: `Quality::Fast` 5,700 pages instead of
+//! 8,400, `Balanced` 6,900 instead of 10,100; before what optimisation and collapse know was there too).
 
 use crate::parallel::filled;
 use alloc::vec::Vec;
@@ -32,8 +32,8 @@ pub(crate) fn recast<T: Copy, U: Copy>(buffer: Vec<T>) -> Vec<U> {
 pub(crate) fn with_numbers<T: Copy>(items: &mut Vec<T>, each: usize) -> (&mut [T], &mut [u64]) {
     const { assert!(align_of::<T>() >= align_of::<u64>()) }
     let count = items.len();
-    let numbers = count * each;
-    items.reserve_exact((numbers * size_of::<u64>()).div_ceil(size_of::<T>()));
+    let numbers = count.checked_mul(each).expect("as many as there is memory for");
+    items.reserve_exact(bytes::<u64>(numbers).div_ceil(size_of::<T>()));
     let items = items.as_mut_ptr();
     // SAFETY: `count` items that are initialised, and behind them memory of the same vector for as many numbers, at an address
     // that is good for them, as asked above. They do not overlap, and the vector is borrowed for both.
@@ -47,7 +47,8 @@ pub(crate) fn with_numbers<T: Copy>(items: &mut Vec<T>, each: usize) -> (&mut [T
 /// A value so many times, in memory in which nothing lies; it is another one if it has no room for them.
 pub(crate) fn lent<T: Copy + Send + Sync>(words: &mut Vec<Word>, len: usize, value: T) -> &mut [T] {
     const { assert!(align_of::<T>() <= align_of::<Word>()) }
-    let needed = (len * size_of::<T>()).div_ceil(size_of::<Word>());
+    // A whole number of references, whatever their scalars.
+    let needed = bytes::<T>(len).div_ceil(size_of::<Word>()).next_multiple_of(4);
     if words.capacity() < needed {
         drop(take(words));
         words.reserve_exact(needed);
@@ -59,13 +60,23 @@ pub(crate) fn lent<T: Copy + Send + Sync>(words: &mut Vec<Word>, len: usize, val
     filled(unsafe { core::slice::from_raw_parts_mut(places, len) }, value)
 }
 
+/// How many so many take.
+fn bytes<T>(len: usize) -> usize {
+    len.checked_mul(size_of::<T>()).expect("as many as there is memory for")
+}
+
 /// New memory for so many.
 ///
-/// A quarter more comes and goes first: glibc keeps of its heap, when all is freed, twice as much as the largest block that ever
-/// did, and that is to be all that a build takes. Else every later build's pages would be new again. It takes two calls of the
-/// system, and no page.
+/// A quarter more comes and goes first, where glibc takes that for a hint: when all is freed, it keeps of its heap twice as much as
+/// the largest block of up to 32 MiB that was ever freed, which is to cover all that a build takes. Else every later build's pages
+/// would be new again. On Linux it takes two calls of the system, and no page.
 pub(crate) fn new_memory<T>(len: usize) -> Vec<T> {
-    drop(core::hint::black_box(Vec::<T>::with_capacity(len + len / 4)));
+    // With what the allocator itself needs.
+    const LARGEST: usize = (32 << 20) - 4096;
+    let largest = LARGEST / size_of::<T>().max(1);
+    if len <= largest {
+        drop(core::hint::black_box(Vec::<T>::with_capacity((len + len / 4).min(largest))));
+    }
     Vec::with_capacity(len)
 }
 

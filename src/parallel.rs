@@ -128,7 +128,8 @@ const FEW: usize = 1 << 12;
 /// Runs `f`, which is about so many items, where [`map`] has `threads` threads; with `None`, those of the pool it is called in.
 ///
 /// On one of the pool's threads, if others can help: to come from outside for each step takes one thread more than there may be
-/// processors (two threads, a million triangles with `Quality::Fast`: 76 ms instead of 72).
+/// processors (two threads, a million triangles with `Quality::Fast`: 76 ms instead of 72). Of several that come at the same
+/// time, one may then wait for another to be done.
 #[cfg(feature = "rayon")]
 pub(crate) fn in_pool<R: Send>(
     threads: Option<usize>,

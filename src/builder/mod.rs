@@ -287,11 +287,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         };
         let watch = Watch::new(pace);
         let mut tree = build_tree(&mut workspace.build, &rules, &watch).ok_or(BuildError::Stopped)?;
-        if workspace.is_kept || L::RESERVE > 0 {
-            workspace.hand_over();
-        } else {
-            workspace.build = Default::default();
-        }
+        workspace.hand_over();
         let optimise = self.optimise.or_else(|| self.heuristic.optimise());
         if let Some(optimise) = optimise.filter(|optimise| optimise.rounds > 0) {
             let mut memory = workspace.layout.take_words();
@@ -304,7 +300,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         let layout = L::lay_out(&mut tree, primitives, &mut workspace.layout);
         workspace.build.reclaim(tree);
         let mut layout = layout.ok_or(BuildError::TooLarge)?;
-        if !workspace.layout.is_reused {
+        if !workspace.layout.keeps_rest {
             layout.shrink();
         }
         Ok((layout, skipped))

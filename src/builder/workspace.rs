@@ -72,11 +72,13 @@ impl<S: Scalar> Workspace<S> {
         self.hand_over();
         let len = |bytes: usize| bytes.div_ceil(size_of::<PrimRef<S>>());
         let kept: Vec<PrimRef<S>> = recast(self.layout.take_words());
-        self.layout.is_reused = kept.capacity() > 0 && kept.capacity() >= len(bytes);
-        self.build.references = if self.layout.is_reused { kept } else { new_memory(len(bytes.max(later))) };
+        let is_enough = kept.capacity() > 0 && kept.capacity() >= len(bytes);
+        // Blocks that take much less than references do have memory of their own.
+        self.layout.keeps_rest = is_enough || (self.is_kept && later == 0);
+        self.build.references = if is_enough { kept } else { new_memory(len(bytes.max(later))) };
     }
 
-    /// References are not needed any more: what they lie in is memory for blocks.
+    /// References are not needed any more: what they lie in is memory for optimisation, collapse and blocks.
     pub(super) fn hand_over(&mut self) {
         self.layout.keep_words(recast(take(&mut self.build.references)));
     }

@@ -9,8 +9,8 @@ use core::mem::take;
 #[derive(Default)]
 pub struct Buffers {
     words: Vec<Word>,
-    /// Whether the words were left by an earlier hierarchy; else they are new, and cut to size behind the one that is made in them.
-    pub(crate) is_reused: bool,
+    /// Whether what a hierarchy does not need is left to the next; else the words are cut to size behind it.
+    pub(crate) keeps_rest: bool,
 }
 
 impl Buffers {
@@ -21,7 +21,7 @@ impl Buffers {
 
     /// Empty memory for so many words.
     pub(super) fn words_for(&mut self, len: usize) -> Vec<Word> {
-        if self.is_reused {
+        if self.keeps_rest {
             return fitting(&mut self.words, len);
         }
         let words = self.take_words();

@@ -4,17 +4,17 @@
 //!
 //! | input | tests |
 //! |---|---|
-//! | coordinates from subnormal to the largest | here: `coordinates_from_the_smallest_to_the_largest_number`, `an_overflow_is_no_hit_at_infinity`; `closed_meshes.rs`: `*_at_all_sizes`; any exponent and any bits: `properties.rs`, `random_bits.rs` |
-//! | direction components +-0, subnormal, all zero | `extreme_rays.rs`: `plus_zero_and_minus_zero_are_the_same_direction`, `*subnormal*`, `invalid_rays_hit_and_visit_nothing`; `exact_grid.rs` |
-//! | a ray in the plane of a box's face | `extreme_rays.rs`: `a_ray_in_the_plane_of_a_face_*`, `a_coplanar_triangle_misses_*`; `exact_grid.rs` |
-//! | origin on or inside a surface | `extreme_rays.rs`: `the_interval_is_closed_at_a_surface`, `an_origin_inside_*`; `exact_grid.rs` |
+//! | coordinates from subnormal to the largest | here: `coordinates_from_the_smallest_to_the_largest_number`, `an_overflow_is_no_hit_at_infinity`; `../exact/closed_meshes.rs`: `*_at_all_sizes`; any exponent and any bits: `properties.rs`, `random_bits.rs` |
+//! | direction components +-0, subnormal, all zero | `extreme_rays.rs`: `plus_zero_and_minus_zero_are_the_same_direction`, `*subnormal*`, `invalid_rays_hit_and_visit_nothing`; `../exact/grid.rs` |
+//! | a ray in the plane of a box's face | `extreme_rays.rs`: `a_ray_in_the_plane_of_a_face_*`, `a_coplanar_triangle_misses_*`; `../exact/grid.rs` |
+//! | origin on or inside a surface | `extreme_rays.rs`: `the_interval_is_closed_at_a_surface`, `an_origin_inside_*`; `../exact/grid.rs` |
 //! | t_min > t_max; NaN or infinity in a ray | `extreme_rays.rs`: `invalid_rays_hit_and_visit_nothing` |
 //! | NaN or infinity in a primitive | `invalid_primitives.rs` |
-//! | no area; slivers | `invalid_primitives.rs`: `a_triangle_without_area_*`; `exact_grid.rs`; here: `slivers_a_million_times_as_long_as_wide` |
+//! | no area; slivers | `invalid_primitives.rs`: `a_triangle_without_area_*`; `../exact/grid.rs`; here: `slivers_a_million_times_as_long_as_wide` |
 //! | a million equal primitives or centroids | `hostile.rs`: `a_million_*`, `of_equal_primitives_the_first_is_hit` |
 //! | 0 or 1 primitive | here: `none_or_one_triangle`, `none_or_one_primitive` |
 //! | hostile heuristics | `hostile.rs`: `hostile_heuristics_*`, `a_bad_split_*`; and in every test of agreement |
-//! | a teapot in a stadium, far from the origin, all sizes | here: tests of these names; without a leak: `closed_meshes.rs` |
+//! | a teapot in a stadium, far from the origin, all sizes | here: tests of these names; without a leak: `../exact/closed_meshes.rs` |
 //! | more primitives than indices | `hostile.rs`: `more_primitives_than_indices*` |
 //! | `max_leaf_size` 0 or huge | `hostile.rs`: `a_leaf_size_of_zero_*` |
 

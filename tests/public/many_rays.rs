@@ -2,7 +2,7 @@
 //! other tests, and as many as a person likes:
 //!
 //! ```sh
-//! BVHKIT_RAYS=100000000 cargo test --release --test public many_rays -- --nocapture --test-threads 1
+//! BVHKIT_RAYS=100000000 cargo test --release --test public many_rays:: -- --nocapture --test-threads 1
 //! ```
 
 #[path = "../support/closed.rs"]

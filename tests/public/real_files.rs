@@ -82,7 +82,7 @@ const TESTS: u64 = 3_000_000_000;
 const MOST_RAYS: u64 = 3_000_000;
 
 #[test]
-#[ignore = "takes minutes: cargo test --release --test public real_files -- --ignored --nocapture"]
+#[ignore = "takes minutes: cargo test --release --test public real_files:: -- --ignored --nocapture"]
 fn ten_million_rays_agree_with_the_naive_loop() {
     let (mut rays, mut differences) = (0, 0);
     println!("{:<20} {:>9} {:>10} {:>10} {:>11}", "file", "shapes", "rays", "hits", "differences");
