@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn memory_is_lent_where_there_is_enough_and_made_where_there_is_not() {
-        let mut words = Vec::with_capacity(6);
+        let mut words = Vec::with_capacity(8);
         words.extend([Word([7; 2]); 5]);
         let start = words.as_ptr().addr();
         let lent_to = lent(&mut words, 9, [1.5f32, 2.5]);
