@@ -290,9 +290,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         workspace.hand_over();
         let optimise = self.optimise.or_else(|| self.heuristic.optimise());
         if let Some(optimise) = optimise.filter(|optimise| optimise.rounds > 0) {
-            let mut memory = workspace.layout.take_words();
-            optimise.run(&mut tree, &mut memory, || watch.ask() == Pace::Steady);
-            workspace.layout.keep_words(memory);
+            optimise.run(&mut tree, workspace.layout.words(), || watch.ask() == Pace::Steady);
         }
         if watch.ask() == Pace::Stop {
             return Err(BuildError::Stopped);

@@ -14,7 +14,12 @@ pub struct Buffers {
 }
 
 impl Buffers {
-    /// What memory there is.
+    /// What memory there is, to be lent.
+    pub(crate) fn words(&mut self) -> &mut Vec<Word> {
+        &mut self.words
+    }
+
+    /// The same, to be given away.
     pub(crate) fn take_words(&mut self) -> Vec<Word> {
         take(&mut self.words)
     }

@@ -105,15 +105,13 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         buffers: &mut Buffers,
     ) -> Option<Self> {
         const { assert!((MAX_DEPTH + 30).div_ceil(N.ilog2() as usize) * (N - 1) <= MAX_PENDING) }
-        let mut words = buffers.take_words();
-        let plan = Plan::<S, N>::new(tree, F::leaf_cost(contents.operands()), &mut words);
+        let plan = Plan::<S, N>::new(tree, F::leaf_cost(contents.operands()), buffers.words());
         let cheapest = |node, roots: &mut _| plan.cheapest(node, roots);
         let by_levels = |node, roots: &mut _| plan.by_levels(node, roots);
         let arrangement = match Self::arrange(&plan, cheapest, contents) {
             Err(Failure::TooDeep) => Self::arrange(&plan, by_levels, contents),
             other => other,
         };
-        buffers.keep_words(words);
         let Arrangement { sections, root } = arrangement.ok()?;
         let coordinates = [tree.aabb.min, tree.aabb.max];
         Some(Self {
