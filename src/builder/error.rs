@@ -53,7 +53,7 @@ impl fmt::Display for BuildError {
                 f.write_str("max_leaf_size is 0, but a leaf has a primitive: give 1 or more")
             }
             Self::TooLarge => {
-                f.write_str("the layout exceeds 16 GiB: use the layout Tree, or split the scene")
+                f.write_str("there are more primitives, or nodes, than the layout can number: use the layout Tree, or split the scene")
             }
             Self::NoInstructionSet(set) => {
                 write!(f, "no {set} here: InstructionSet::available() tells what there is")

@@ -26,6 +26,16 @@ struct LinkedNode<S> {
     height: u32,
 }
 
+/// What a move has done, to be undone.
+struct Moved {
+    /// By how much it has made the sum of areas smaller.
+    gain: f64,
+    /// The parent's children before.
+    children: [u32; 2],
+    /// The node, its parent, sibling and the node above them, its new sibling and what was that one's parent.
+    concerned: [u32; 6],
+}
+
 impl<'m, S: Scalar> Linked<'m, S> {
     /// The root, an inner node.
     pub const ROOT: u32 = 0;
@@ -102,12 +112,12 @@ impl<'m, S: Scalar> Linked<'m, S> {
         if left == node { right } else { left }
     }
 
-    /// The sum of the inner nodes' areas, in units of the root's.
+    /// The sum of the inner nodes' areas, in units of the root's; if that is zero or infinite, their number.
     pub fn cost(&self) -> f64 {
         let area = |node: &LinkedNode<S>| self.area_of(&node.aabb).to_f64();
         let root = area(&self.nodes[0]);
         let sum: f64 = self.nodes[..self.children.len()].iter().map(area).sum();
-        if root > 0.0 { sum / root } else { self.children.len() as f64 }
+        if root > 0.0 && root.is_finite() { sum / root } else { self.children.len() as f64 }
     }
 
     fn height_above(&self, children: [u32; 2]) -> u32 {
@@ -115,33 +125,56 @@ impl<'m, S: Scalar> Linked<'m, S> {
         1 + height(children[0]).max(height(children[1]))
     }
 
+    /// Moves a node beside its new sibling if that makes the sum of areas smaller, once other nodes have been moved. Tells by
+    /// how much.
+    pub fn improve(&mut self, found: &Move<S>, touched: &mut [bool]) -> Option<f64> {
+        let moved = self.apply(found, touched)?;
+        // Not if it is NaN: the areas are too large to be told apart.
+        if moved.gain > 0.0 {
+            return Some(moved.gain);
+        }
+        self.undo(found, &moved, touched);
+        None
+    }
+
     /// Moves a node beside its new sibling, unless one of those concerned was touched before, or that would make a circle
-    /// or too long a path. Tells whether it did.
-    pub fn apply(&mut self, found: &Move<S>, touched: &mut [bool]) -> bool {
+    /// or too long a path.
+    fn apply(&mut self, found: &Move<S>, touched: &mut [bool]) -> Option<Moved> {
         let Move { node, beside, .. } = *found;
         let (parent, sibling) = (self.parent(node), self.sibling(node));
         let (above, target) = (self.parent(parent), self.parent(beside));
         let concerned = [node, parent, sibling, above, beside, target];
         if concerned.iter().any(|&node| touched[node as usize]) {
-            return false;
+            return None;
         }
-        let Some(depth) = self.depth_outside(beside, node) else { return false };
+        let depth = self.depth_outside(beside, node)?;
         let height = self.height_above([node, beside]) as usize;
         if depth + height > MAX_DEPTH {
-            return false;
+            return None;
         }
         for node in concerned {
             touched[node as usize] = true;
         }
         // The parent goes along: the sibling takes its place.
+        let children = self.children[parent as usize];
         self.replace(above, parent, sibling);
         self.replace(target, beside, parent);
-        self.children[parent as usize] = [beside, node];
-        self.nodes[beside as usize].parent = parent;
-        self.nodes[node as usize].parent = parent;
-        self.refit(above);
+        self.adopt(parent, [beside, node]);
+        let gain = self.refit(above) + self.refit(parent);
+        Some(Moved { gain, children, concerned })
+    }
+
+    /// Puts a node back where it was, if it was the last that was moved.
+    fn undo(&mut self, found: &Move<S>, moved: &Moved, touched: &mut [bool]) {
+        let [_, parent, sibling, above, _, target] = moved.concerned;
+        self.replace(target, parent, found.beside);
+        self.replace(above, sibling, parent);
+        self.adopt(parent, moved.children);
+        self.refit(target);
         self.refit(parent);
-        true
+        for node in moved.concerned {
+            touched[node as usize] = false;
+        }
     }
 
     /// How far a place is from the root; none if it lies below a node.
@@ -163,16 +196,25 @@ impl<'m, S: Scalar> Linked<'m, S> {
         self.nodes[other as usize].parent = parent;
     }
 
-    /// Boxes and heights from a node up to the root.
-    fn refit(&mut self, mut node: u32) {
+    fn adopt(&mut self, parent: u32, children: [u32; 2]) {
+        self.children[parent as usize] = children;
+        for child in children {
+            self.nodes[child as usize].parent = parent;
+        }
+    }
+
+    /// Boxes and heights from a node up to the root. Tells by how much the sum of areas becomes smaller.
+    fn refit(&mut self, mut node: u32) -> f64 {
+        let mut gain = 0.0;
         loop {
             let children = self.children[node as usize];
             let aabb = self.aabb(children[0]).union(*self.aabb(children[1]));
             let height = self.height_above(children);
+            gain += self.area(node).to_f64() - self.area_of(&aabb).to_f64();
             let refitted = &mut self.nodes[node as usize];
             (refitted.aabb, refitted.height) = (aabb, height);
             if node == Self::ROOT {
-                break;
+                return gain;
             }
             node = refitted.parent;
         }
@@ -223,6 +265,39 @@ mod tests {
     }
 
     #[test]
+    fn what_gains_nothing_is_put_back() {
+        let spheres = (0..40u16).map(|i| Sphere::new([f32::from(i * 7 % 40), f32::from(i % 5), 0.0], 0.5));
+        let builder = Bvh::builder().max_leaf_size(1).layout::<Tree>();
+        let (bvh, mut memory) = (builder.build(spheres).unwrap(), Vec::new());
+        let mut linked = Linked::new(bvh.layout(), &mut memory).unwrap();
+        let all = |linked: &Linked<'_, f32>| {
+            let nodes: Vec<_> = linked.nodes.iter().map(|n| (n.aabb, n.parent, n.height)).collect();
+            (nodes, linked.children.clone())
+        };
+        let (mut improved, mut put_back, mut touched) = (0, 0, alloc::vec![false; linked.len()]);
+        for node in 1..linked.len() as u32 {
+            for beside in 1..linked.len() as u32 {
+                let known = [node, linked.parent(node), linked.sibling(node)];
+                if linked.parent(node) == Linked::<f32>::ROOT || known.contains(&beside) {
+                    continue;
+                }
+                let (before, cost) = (all(&linked), linked.cost());
+                let root = linked.area(Linked::<f32>::ROOT).to_f64();
+                // Whatever was promised.
+                if let Some(gain) = linked.improve(&Move { node, beside, gain: 1.0 }, &mut touched) {
+                    assert!((cost - linked.cost() - gain / root).abs() < 1e-6 * cost && linked.cost() < cost);
+                    touched.fill(false);
+                    improved += 1;
+                } else {
+                    assert!(all(&linked) == before && touched.iter().all(|touched| !touched));
+                    put_back += 1;
+                }
+            }
+        }
+        assert!(improved > 0 && put_back > 1000, "{improved} {put_back}");
+    }
+
+    #[test]
     fn no_move_makes_a_circle_or_too_long_a_path() {
         let spheres = (0..100u8).map(|i| Sphere::new([f32::from(i), 0.0, 0.0], 0.5));
         let builder = Bvh::builder().heuristic(Chains).max_leaf_size(1).layout::<Tree>();
@@ -236,7 +311,7 @@ mod tests {
                 leaves.filter(|&leaf| linked.depth_outside(leaf, linked.children[0][0]).is_some());
             let beside = below_right.max_by_key(|&leaf| depth(&linked, leaf)).unwrap();
             let moved = linked.apply(&Move { node: node(&linked), beside, gain: 1.0 }, &mut touched);
-            (moved, linked.nodes[0].height as usize, depth(&linked, beside))
+            (moved.is_some(), linked.nodes[0].height as usize, depth(&linked, beside))
         };
         let right_chain = |linked: &Linked<'_, f32>| linked.children[linked.children[0][1] as usize][1];
         assert!(!apply(right_chain).0, "the end of the right chain is below it");

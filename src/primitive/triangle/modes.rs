@@ -303,6 +303,27 @@ mod tests {
         }
     }
 
+    /// The slope across is too small for all digits of an `f32`, or for any.
+    #[test]
+    fn a_leaf_of_precise_triangles_loses_no_hit_to_underflow() {
+        for (width, distance) in [(1e-29f32, 1e12f32), (1e-29, 1e14), (1e-25, 1e18), (1e-25, 1e20)] {
+            let mut hits = 0;
+            for i in 0..2000u16 {
+                let part = |factor: u16| f32::from(i.wrapping_mul(factor) % 1009) / 1009.0 - 0.5;
+                let corner = |k: u16| [part(3 + k) * width, part(7 + 2 * k), part(31 + k)];
+                let [a, b, c] = [corner(0), corner(41), corner(97)];
+                let center: [f32; 3] = core::array::from_fn(|k| (a[k] + b[k] + c[k]) / 3.0);
+                let origin = [center[0] + part(11) * width, -distance, center[2] + part(13)];
+                let ray = Ray::new(origin, core::array::from_fn(|k| center[k] - origin[k]));
+                let triangle = [Precise(Triangle::new(a, b, c))];
+                let expected = crate::reference::closest_hit(&triangle, &ray);
+                hits += usize::from(expected.is_some());
+                assert_eq!(crate::Bvh::build(triangle).unwrap().closest_hit(&ray), expected, "{ray:?}");
+            }
+            assert!(hits > 1000, "{width} {distance}: {hits}");
+        }
+    }
+
     /// All the differences of products are zero once rounded, in `f64`, on the one face ahead of the origin.
     #[test]
     fn a_flat_tetrahedron_around_the_origin_does_not_leak_in_f64() {

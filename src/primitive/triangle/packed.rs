@@ -72,15 +72,19 @@ impl Leaf<f32, Barycentrics> for PreciseLeaf {
     }
 
     /// A weight is a difference of two products of places in the frame, each of them off by less than 2 epsilon of what
-    /// it would be if all signs were plus: so the weight is, by less than 16 epsilon of the largest such product.
+    /// it would be if all signs were plus: so the weight is, by less than 16 epsilon of the largest such product. A slope, a
+    /// place or a product that underflows is off by more than its epsilons, but by less than one of the smallest normal number,
+    /// which is added to each.
     #[inline(always)]
     fn candidates<L: Lanes<f32>>(operands: &Operands<'_, f32, L>, ray: &PreparedRay, _: f32) -> L::Mask {
         let Sights { x, y, z, weights: [a, b, c], .. } = Sights::new(operands, &ray.shear);
         let [dx, dy, dz] = ray.shear.direction;
         let (x, y, z) = (largest(x), largest(y), largest(z));
         let splat = |x: f32| operands.splat(x.abs());
-        let (x, y) = (x * splat(dz) + z * splat(dx), y * splat(dz) + z * splat(dy));
-        let doubt = x * y * operands.splat(16.0 * f32::EPSILON) + operands.splat(f32::MIN_POSITIVE);
+        let tiny = operands.splat(f32::MIN_POSITIVE);
+        let (x, y) =
+            (x * splat(dz) + z * (splat(dx) + tiny) + tiny, y * splat(dz) + z * (splat(dy) + tiny) + tiny);
+        let doubt = x * y * operands.splat(16.0 * f32::EPSILON) + tiny;
         let (lowest, highest) = (a.min(b).min(c), a.max(b).max(c));
         let zero = operands.splat(0.0);
         (zero - doubt).le(lowest) | highest.le(doubt)
