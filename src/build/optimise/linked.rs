@@ -133,7 +133,7 @@ impl<'m, S: Scalar> Linked<'m, S> {
         if moved.gain > 0.0 {
             return Some(moved.gain);
         }
-        self.undo(found, &moved, touched);
+        self.undo(&moved, touched);
         None
     }
 
@@ -165,9 +165,9 @@ impl<'m, S: Scalar> Linked<'m, S> {
     }
 
     /// Puts a node back where it was, if it was the last that was moved.
-    fn undo(&mut self, found: &Move<S>, moved: &Moved, touched: &mut [bool]) {
-        let [_, parent, sibling, above, _, target] = moved.concerned;
-        self.replace(target, parent, found.beside);
+    fn undo(&mut self, moved: &Moved, touched: &mut [bool]) {
+        let [_, parent, sibling, above, beside, target] = moved.concerned;
+        self.replace(target, parent, beside);
         self.replace(above, sibling, parent);
         self.adopt(parent, moved.children);
         self.refit(target);
