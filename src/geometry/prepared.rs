@@ -29,7 +29,8 @@ impl<S: Scalar> PreparedRay<S> {
     /// The rest, for one whose parts are at hand.
     #[inline(always)]
     pub(crate) fn of_parts(ray: &Ray<S>, slabs: Slabs<S>, shear: Shear<S>) -> Self {
-        let widen = |point: [S; 3]| point.map(S::widen);
+        // Written out: `array::map` is not inlined in builds of several codegen units.
+        let widen = |[x, y, z]: [S; 3]| [x.widen(), y.widen(), z.widen()];
         Self { ray: *ray, slabs, shear, wide_shear: Shear::new(&widen(ray.origin), &widen(ray.direction)) }
     }
 }

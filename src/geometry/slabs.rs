@@ -44,12 +44,14 @@ impl<S: Scalar> Slabs<S> {
     pub fn new(ray: &Ray<S>) -> Self {
         let padding = S::from_f64(5.0) * S::EPSILON;
         let [dx, dy, dz] = ray.direction;
-        let inv = [S::ONE / dx, S::ONE / dy, S::ONE / dz];
+        let (ix, iy, iz) = (S::ONE / dx, S::ONE / dy, S::ONE / dz);
+        let (near, far) = (S::ONE - padding, S::ONE + padding);
+        // Written out: `array::map` is not inlined in builds of several codegen units.
         Self {
             origin: ray.origin,
-            inv_near: inv.map(|i| i * (S::ONE - padding)),
-            inv_far: inv.map(|i| i * (S::ONE + padding)),
-            negative: ray.direction.map(S::has_minus_sign),
+            inv_near: [ix * near, iy * near, iz * near],
+            inv_far: [ix * far, iy * far, iz * far],
+            negative: [dx.has_minus_sign(), dy.has_minus_sign(), dz.has_minus_sign()],
             t_min: ray.t_min,
             is_ordinary: ray.is_ordinary(),
         }
