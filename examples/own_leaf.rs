@@ -1,10 +1,10 @@
-//! A primitive of one's own with a leaf of its own: eight discs side by side, tested all at once.
+//! A primitive of one's own side by side in its leaves: a sieve tests eight discs at once, and those it lets through are asked.
 
-use bvhkit::{Aabb, Bvh, Intersect, Lanes, Leaf, Operands, PreparedRay, Primitive, Ray};
+use bvhkit::{Aabb, Bvh, Intersect, Lanes, Operands, Primitive, Ray, Sieve, Sieved};
 
 /// A horizontal disc: x, y and z of its center, its radius.
 struct Disc([f32; 4]);
-struct DiscLeaf;
+struct DiscSieve;
 
 impl Primitive for Disc {
     type Scalar = f32;
@@ -16,8 +16,8 @@ impl Primitive for Disc {
 
 impl Intersect for Disc {
     type Payload = ();
-    type Leaf = DiscLeaf;
-    fn intersect(&self, ray: &PreparedRay) -> Option<(f32, ())> {
+    type Leaf = Sieved<DiscSieve>;
+    fn intersect(&self, ray: &Ray) -> Option<(f32, ())> {
         let Disc([cx, cy, cz, r]) = *self;
         let t = (cy - ray.origin[1]) / ray.direction[1];
         let [x, _, z] = ray.at(t);
@@ -29,15 +29,15 @@ impl Intersect for Disc {
     }
 }
 
-impl Leaf<f32, ()> for DiscLeaf {
+impl Sieve<f32> for DiscSieve {
     const OPERANDS: usize = 4;
     /// What `intersect` computes, operation by operation, so that no hit is left out.
-    fn candidates<L: Lanes<f32>>(discs: &Operands<'_, f32, L>, ray: &PreparedRay, limit: f32) -> L::Mask {
+    fn candidates<L: Lanes<f32>>(discs: &Operands<'_, f32, L>, ray: &Ray) -> L::Mask {
         let ([ox, oy, oz], [dx, dy, dz]) =
             (ray.origin.map(|x| discs.splat(x)), ray.direction.map(|x| discs.splat(x)));
         let t = (discs.get(1) - oy) / dy;
         let (x, z, r) = (ox + dx * t - discs.get(0), oz + dz * t - discs.get(2), discs.get(3));
-        t.le(discs.splat(limit)) & (x * x + z * z).le(r * r)
+        t.le(discs.splat(ray.t_max)) & (x * x + z * z).le(r * r)
     }
 }
 

@@ -1,6 +1,6 @@
 //! A primitive of one's own: a box, a ray test. `cargo run --release --example own_primitive`
 
-use bvhkit::{Aabb, Bvh, Intersect, OneByOne, PreparedRay, Primitive, Ray, reference};
+use bvhkit::{Aabb, Bvh, Intersect, OneByOne, Primitive, Ray, reference};
 
 /// A horizontal disc.
 struct Disc {
@@ -19,7 +19,7 @@ impl Primitive for Disc {
 impl Intersect for Disc {
     type Payload = f32; // the distance from the center
     type Leaf = OneByOne; // how discs lie in a leaf
-    fn intersect(&self, ray: &PreparedRay) -> Option<(f32, f32)> {
+    fn intersect(&self, ray: &Ray) -> Option<(f32, f32)> {
         let t = (self.center[1] - ray.origin[1]) / ray.direction[1];
         let [x, _, z] = ray.at(t);
         let distance = (x - self.center[0]).hypot(z - self.center[2]);

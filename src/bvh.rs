@@ -6,12 +6,12 @@ use crate::builder::{BuildError, Builder, Quality, Workspace};
 use crate::geometry::{Aabb, Ray};
 use crate::layout::{Buffers, Layout, WideTree};
 use crate::primitive::{Corners, Intersect, Primitive};
-use crate::query::{Any, Ask, Closest, Counters, Hit, Hits, Recorder, Traverse, ask_all};
+use crate::query::{Hit, Hits, Traverse};
 use crate::simd::{Backend, InstructionSet};
+use crate::traverse::{Counters, Recorder};
 use crate::tree::{InvariantError, Tree, TreeReport, check, epo};
 use alloc::vec::Vec;
 use core::fmt;
-use core::marker::PhantomData;
 
 /// A bounding volume hierarchy over primitives of type `P`, owned (`Bvh<Sphere>`) or borrowed
 /// (`Bvh<&Sphere>`).
@@ -237,7 +237,7 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
     /// primitive with the lowest index. None for an invalid ray: see [`Ray::validate`].
     #[inline]
     pub fn closest_hit(&self, ray: &Ray<P::Scalar>) -> Option<Hit<P::Scalar, P::Payload>> {
-        self.closest_hit_with(ray, &mut ())
+        self.layout.closest_hit(self.backend, &self.primitives, ray)
     }
 
     /// As [`closest_hit`](Self::closest_hit), telling `recorder` of each step:
@@ -248,30 +248,28 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
         ray: &Ray<P::Scalar>,
         recorder: &mut impl Recorder,
     ) -> Option<Hit<P::Scalar, P::Payload>> {
-        let Self { layout, primitives, .. } = self;
-        self.backend.run(Ask { layout, primitives, ray, recorder, question: PhantomData::<Closest<'_, P>> })
+        let (hit, steps) = self.layout.counted_closest_hit(self.backend, &self.primitives, ray);
+        steps.tell(recorder);
+        hit
     }
 
     /// Whether anything is hit in the ray's interval: the same as `closest_hit(ray).is_some()`,
     /// but content with any hit.
     #[inline]
     pub fn any_hit(&self, ray: &Ray<P::Scalar>) -> bool {
-        self.any_hit_with(ray, &mut ())
+        self.layout.any_hit(self.backend, &self.primitives, ray)
     }
 
     /// As [`any_hit`](Self::any_hit), telling `recorder` of each step.
     #[inline]
     pub fn any_hit_with(&self, ray: &Ray<P::Scalar>, recorder: &mut impl Recorder) -> bool {
-        let Self { layout, primitives, .. } = self;
-        self.backend.run(Ask { layout, primitives, ray, recorder, question: PhantomData::<Any<'_, P>> })
+        let (is_hit, steps) = self.layout.counted_any_hit(self.backend, &self.primitives, ray);
+        steps.tell(recorder);
+        is_hit
     }
 
     /// [`closest_hit`](Self::closest_hit) of each ray, the same bits, in the place of the same number. If there are more
     /// rays than places or more places than rays, the others are left alone.
-    ///
-    /// With the feature `std`, of a long list some rays are traced one by one and some several in turns, so that one goes
-    /// on while others wait for memory, now and then, and the rest in whichever way a clock found quicker: see the README for
-    /// what that gains.
     ///
     /// ```
     /// use bvhkit::{Bvh, Ray, Sphere};
@@ -283,13 +281,13 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
     /// # Ok::<(), bvhkit::BuildError>(())
     /// ```
     pub fn closest_hits(&self, rays: &[Ray<P::Scalar>], hits: &mut [Option<Hit<P::Scalar, P::Payload>>]) {
-        ask_all::<P, L, Closest<'_, P>>(&self.layout, self.backend, &self.primitives, rays, hits);
+        self.layout.closest_hits(self.backend, &self.primitives, rays, hits);
     }
 
     /// [`any_hit`](Self::any_hit) of each ray, in the place of the same number; as
     /// [`closest_hits`](Self::closest_hits).
     pub fn any_hits(&self, rays: &[Ray<P::Scalar>], hits: &mut [bool]) {
-        ask_all::<P, L, Any<'_, P>>(&self.layout, self.backend, &self.primitives, rays, hits);
+        self.layout.any_hits(self.backend, &self.primitives, rays, hits);
     }
 
     /// What [`closest_hit`](Self::closest_hit) visits for these rays, in all and by
@@ -314,7 +312,7 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
     pub fn closest_hit_steps(&self, rays: &[Ray<P::Scalar>]) -> Counters {
         let mut counters = Counters::default();
         for ray in rays {
-            self.closest_hit_with(ray, &mut counters);
+            counters += self.layout.counted_closest_hit(self.backend, &self.primitives, ray).1;
         }
         counters
     }
@@ -323,7 +321,7 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
     pub fn any_hit_steps(&self, rays: &[Ray<P::Scalar>]) -> Counters {
         let mut counters = Counters::default();
         for ray in rays {
-            self.any_hit_with(ray, &mut counters);
+            counters += self.layout.counted_any_hit(self.backend, &self.primitives, ray).1;
         }
         counters
     }

@@ -60,6 +60,7 @@
 //!
 //! - `rayon` (default): parallel builds; the tree is the same with and without.
 //! - `std` (default): the standard library's square root, its clock, the processor's features. Without it the crate is `no_std` + alloc.
+//! - `libm`: libm's square root, needed without `std`.
 //! - `exact`: the exact oracle, `reference::exact`.
 //! - `portable`: [`InstructionSet::Portable`] also where the target has vectors, for tests.
 #![no_std]
@@ -74,12 +75,14 @@ mod builder;
 mod bvh;
 mod geometry;
 mod layout;
+mod leaf;
 mod memory;
 mod parallel;
 mod primitive;
 mod query;
 pub mod reference;
 mod simd;
+mod traverse;
 mod tree;
 
 /// The README's examples are tests.
@@ -91,14 +94,17 @@ pub use build::heuristic;
 pub use build::{Flaw, Gain, Optimise, Pace, PrimRef};
 pub use builder::{BuildError, Builder, OnInvalid, Quality, Workspace};
 pub use bvh::Bvh;
-pub use geometry::{Aabb, Axis, PreparedRay, Ray, RayError, Scalar};
+pub use geometry::{Aabb, Axis, Ray, RayError, Scalar};
 pub use layout::{CompactTree, Layout, WideTree};
+pub use leaf::{
+    FastLeaf, LEAF_WIDTH, Leaf, OneByOne, Operands, PreciseLeaf, Sieve, Sieved, SphereLeaf, WatertightLeaf,
+};
 pub use parallel::ThreadPoolError;
 pub use primitive::{
-    Barycentrics, Corners, Fast, FastLeaf, Intersect, LEAF_WIDTH, Leaf, MeshError, MeshTriangle, OneByOne,
-    Operands, Precise, PreciseLeaf, Primitive, Sphere, SphereLeaf, SurfacePoint, Triangle, TriangleLeaf,
-    TriangleMesh, Watertight, WatertightLeaf,
+    Barycentrics, Corners, Fast, Intersect, MeshError, MeshTriangle, Precise, Primitive, Sphere,
+    SurfacePoint, Triangle, TriangleMesh, Watertight,
 };
-pub use query::{Counters, Hit, Hits, Recorder, Traverse};
+pub use query::{Hit, Hits, Traverse};
 pub use simd::{InstructionSet, Lanes};
+pub use traverse::{Counters, Recorder};
 pub use tree::{InvariantError, LeafSizes, MAX_DEPTH, Tree, TreeReport};

@@ -65,21 +65,6 @@ fn bytes<T>(len: usize) -> usize {
     len.checked_mul(size_of::<T>()).expect("as many as there is memory for")
 }
 
-/// New memory for so many.
-///
-/// A quarter more comes and goes first, where glibc takes that for a hint: when all is freed, it keeps of its heap twice as much as
-/// the largest block of up to 32 MiB that was ever freed, which is to cover all that a build takes. Else every later build's pages
-/// would be new again. On Linux it takes two calls of the system, and no page.
-pub(crate) fn new_memory<T>(len: usize) -> Vec<T> {
-    // With what the allocator itself needs.
-    const LARGEST: usize = (32 << 20) - 4096;
-    let largest = LARGEST / size_of::<T>().max(1);
-    if len <= largest {
-        drop(core::hint::black_box(Vec::<T>::with_capacity((len + len / 4).min(largest))));
-    }
-    Vec::with_capacity(len)
-}
-
 /// An empty buffer for so many: the kept one, unless it is too small, or so large that what is made of it would take much more
 /// than it has to. In place of one that is too small, one that is larger by an eighth, for what goes on to grow: by a
 /// multiple of four, so that words remain a whole number of references.

@@ -67,7 +67,6 @@ fn hierarchies_are_the_same_in_memory_that_others_left() {
             assert_all_same::<S, WideTree<S>>("wide", &triangles, &mut workspace);
             assert_all_same::<S, CompactTree<S>>("compact", &triangles, &mut workspace);
             assert_all_same::<S, Tree<S>>("binary", &triangles, &mut workspace);
-            assert_all_same::<S, WideTree<S, 8>>("8 wide", &triangles, &mut workspace);
         }
     }
     let _turn = turn();

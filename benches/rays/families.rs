@@ -19,9 +19,7 @@ pub fn all(scene: &NamedScene, rays: usize) -> Vec<Family> {
     let (spheres, discs) = (spheres(triangles), discs(triangles));
     let (around, among) = (kinds::all(&spheres, scene, rays), kinds::all(&discs, scene, rays));
     let layouts = vec![
-        ours::<_, WideTree<f32, 4>>("wide 4", &fast),
-        ours::<_, WideTree<f32, 8>>("wide 8", &fast),
-        ours::<_, WideTree<f32, 16>>("wide 16", &fast),
+        ours::<_, WideTree>("wide", &fast),
         ours::<_, CompactTree>("compact", &fast),
         ours::<_, Tree>("binary", &fast),
         peer("obvhs BVH2", triangles, Peer::bvh2),

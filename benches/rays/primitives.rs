@@ -2,7 +2,7 @@
 //! inscribed circle.
 
 use crate::support::rays::Surface;
-use bvhkit::{Aabb, Intersect, OneByOne, PreparedRay, Primitive, Sphere, Triangle};
+use bvhkit::{Aabb, Intersect, OneByOne, Primitive, Ray, Sphere, Triangle};
 use glam::Vec3;
 
 pub fn spheres(triangles: &[Triangle]) -> Vec<Sphere> {
@@ -44,7 +44,7 @@ impl Primitive for Disc {
 impl Intersect for Disc {
     type Payload = ();
     type Leaf = OneByOne;
-    fn intersect(&self, ray: &PreparedRay) -> Option<(f32, ())> {
+    fn intersect(&self, ray: &Ray) -> Option<(f32, ())> {
         let to_center = self.center - Vec3::from(ray.origin);
         let t = self.normal.dot(to_center) / self.normal.dot(ray.direction.into());
         let from_center = self.center.distance_squared(ray.at(t).into());

@@ -34,9 +34,9 @@ use super::runs::Cutter;
 use super::subtree::{Piece, Subtree, TASK_SIZE, join, task_child};
 use super::watch::{Pace, Watch};
 use crate::geometry::{Aabb, Scalar};
+use crate::leaf::LEAF_WIDTH;
 use crate::memory::with_numbers;
 use crate::parallel;
-use crate::primitive::LEAF_WIDTH;
 use crate::tree::{Child, MAX_DEPTH};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -59,14 +59,14 @@ const _: () = assert!(TASK_SIZE < 1 << DEPTH, "what lies in a task halves to one
 
 /// The tree over references, at least one, in clusters of up to `size`, which `split` makes a tree of: one whose leaves
 /// are single clusters.
-pub(super) fn build<S: Scalar, H: Sync + ?Sized>(
+pub(super) fn build<S: Scalar>(
     references: &mut Vec<PrimRef<S>>,
     scene: &Aabb<S>,
     size: usize,
-    rules: &Rules<'_, H>,
+    rules: &Rules<'_, S>,
     watch: &Watch<'_>,
     buffers: &mut Buffers<S>,
-    split: impl FnOnce(&mut Vec<PrimRef<S>>) -> Subtree<S>,
+    split: &dyn Fn(&mut Vec<PrimRef<S>>) -> Subtree<S>,
 ) -> Subtree<S> {
     // Of a cluster that is cut, no more than the layout can divide; of one with a tree, no more than lie in one task.
     let is_cut = rules.max_runs > 1;

@@ -27,9 +27,9 @@ impl<'m> Curve<'m> {
         let all = any(&parallel::map(codes.chunks(TASK_SIZE).collect(), any));
         let code_bits = u64::BITS - all.leading_zeros();
         let lost = (code_bits + place_bits).saturating_sub(bits as u32);
-        let parts = codes.chunks_mut(TASK_SIZE).zip((0..).step_by(TASK_SIZE));
-        parallel::map(parts.collect(), |(codes, first)| {
-            for (code, place) in codes.iter_mut().zip(first..) {
+        let mut parts: Vec<_> = codes.chunks_mut(TASK_SIZE).zip((0..).step_by(TASK_SIZE)).collect();
+        parallel::each(&mut parts, |(codes, first)| {
+            for (code, place) in codes.iter_mut().zip(*first..) {
                 *code = (*code >> lost).unbounded_shl(place_bits) | place;
             }
         });

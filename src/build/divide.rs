@@ -7,8 +7,8 @@ use crate::geometry::{Aabb, Axis, Scalar};
 use crate::simd::prefetch_ahead;
 
 /// What the driver needs to divide any node.
-pub(crate) struct Rules<'h, H: ?Sized> {
-    pub heuristic: &'h H,
+pub(crate) struct Rules<'h, S: Scalar> {
+    pub heuristic: &'h dyn Heuristic<S>,
     pub max_leaf_size: usize,
     /// Into how many leaves the layout divides one of neighbours along a curve.
     pub max_runs: usize,
@@ -39,11 +39,7 @@ impl<'r, S: Scalar> Set<'r, S> {
     /// the root (at most 2^32 references, 32 <= 48); a proposed split is taken only if it holds for both
     /// sides; equal halves, which replace it otherwise, keep it, since each is one level deeper and
     /// has one binary digit less.
-    pub fn divide<H: Heuristic<S> + ?Sized>(
-        self,
-        rules: &Rules<'_, H>,
-        scene: &Aabb<S>,
-    ) -> Result<[Self; 2], Self> {
+    pub fn divide(self, rules: &Rules<'_, S>, scene: &Aabb<S>) -> Result<[Self; 2], Self> {
         let n = self.len;
         if n < 2 {
             return Err(self);

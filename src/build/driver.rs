@@ -12,7 +12,7 @@
 use super::buffers::Buffers;
 use super::clusters::{self, SPLIT_DEPTH};
 use super::divide::{Rules, Set};
-use super::heuristic::{Heuristic, new_codes};
+use super::heuristic::new_codes;
 use super::linear;
 use super::reference::{PrimRef, bounds};
 use super::subtree::{Parent, Subtree, TASK_SIZE, join, task_child};
@@ -43,16 +43,16 @@ fn push<'r, S: Scalar>(
 }
 
 /// What is the same for all nodes.
-struct Build<'h, S, H: ?Sized> {
-    rules: &'h Rules<'h, H>,
+struct Build<'h, S: Scalar> {
+    rules: &'h Rules<'h, S>,
     watch: &'h Watch<'h>,
     scene: Aabb<S>,
 }
 
 /// Builds the tree over the buffers' references, which are valid; none if it was told to stop.
-pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
+pub(crate) fn build_tree<S: Scalar>(
     buffers: &mut Buffers<S>,
-    rules: &Rules<'_, H>,
+    rules: &Rules<'_, S>,
     watch: &Watch<'_>,
 ) -> Option<Tree<S>> {
     let mut references = take(&mut buffers.references);
@@ -72,10 +72,10 @@ pub(crate) fn build_tree<S: Scalar, H: Heuristic<S> + ?Sized>(
 }
 
 /// As the heuristic wants it: by codes, by splits of clusters, or by splits.
-fn build_whole<S: Scalar, H: Heuristic<S> + ?Sized>(
+fn build_whole<S: Scalar>(
     references: &mut Vec<PrimRef<S>>,
     aabb: Aabb<S>,
-    rules: &Rules<'_, H>,
+    rules: &Rules<'_, S>,
     watch: &Watch<'_>,
     buffers: &mut Buffers<S>,
 ) -> Subtree<S> {
@@ -92,17 +92,17 @@ fn build_whole<S: Scalar, H: Heuristic<S> + ?Sized>(
         return build_by_splits(references, aabb, rules, watch, buffers);
     }
     let above = Rules { max_leaf_size: 1, block_size: 1, max_depth: SPLIT_DEPTH, ..*rules };
-    clusters::build(references, &aabb, size, rules, watch, buffers, |clusters| {
+    clusters::build(references, &aabb, size, rules, watch, buffers, &|clusters| {
         watch.begin(clusters.len());
         build_by_splits(clusters, aabb, &above, watch, &mut Buffers::default())
     })
 }
 
 /// Asks the heuristic to split every node.
-fn build_by_splits<S: Scalar, H: Heuristic<S> + ?Sized>(
+fn build_by_splits<S: Scalar>(
     references: &mut Vec<PrimRef<S>>,
     aabb: Aabb<S>,
-    rules: &Rules<'_, H>,
+    rules: &Rules<'_, S>,
     watch: &Watch<'_>,
     buffers: &mut Buffers<S>,
 ) -> Subtree<S> {
@@ -119,10 +119,7 @@ fn build_by_splits<S: Scalar, H: Heuristic<S> + ?Sized>(
 
 /// Divides all sets of more than [`TASK_SIZE`] references, and returns the others as tasks; and, once the build is not steady
 /// any more, those that are left.
-fn build_top<'r, S: Scalar, H: Heuristic<S> + ?Sized>(
-    root: OpenNode<'r, S>,
-    build: &Build<'_, S, H>,
-) -> (Subtree<S>, Vec<Set<'r, S>>) {
+fn build_top<'r, S: Scalar>(root: OpenNode<'r, S>, build: &Build<'_, S>) -> (Subtree<S>, Vec<Set<'r, S>>) {
     let mut top = Subtree::with_capacity(0, 0);
     let mut tasks = Vec::new();
     let mut level = vec![root];
@@ -147,10 +144,7 @@ fn build_top<'r, S: Scalar, H: Heuristic<S> + ?Sized>(
 }
 
 /// Builds everything below one set, depth first: a left child is the node after its parent.
-fn build_subtree<S: Scalar, H: Heuristic<S> + ?Sized>(
-    root: Set<'_, S>,
-    build: &Build<'_, S, H>,
-) -> Subtree<S> {
+fn build_subtree<S: Scalar>(root: Set<'_, S>, build: &Build<'_, S>) -> Subtree<S> {
     let Build { rules, watch, scene } = build;
     let len = root.len;
     match watch.ask() {

@@ -21,6 +21,7 @@ mod optimise;
 mod radix;
 mod reference;
 mod runs;
+mod scalar;
 mod subtree;
 mod watch;
 
@@ -29,5 +30,6 @@ pub(crate) use divide::Rules;
 pub(crate) use driver::build_tree;
 pub use optimise::{Gain, Optimise};
 pub use reference::{Flaw, PrimRef};
+pub use scalar::{BuildScalar, LayOut};
 pub use watch::Pace;
 pub(crate) use watch::{Watch, Watcher};

@@ -41,8 +41,8 @@ pub(super) fn sort<'m>(keys: &'m mut [u64], spare: &'m mut [u64], low: u32, high
         targets = rest;
         (source, target)
     });
-    let parts = parts.filter(|(bucket, _)| bucket.len() > 1).collect();
-    parallel::map(parts, |(bucket, spare)| sort_bucket(bucket, spare, low, top));
+    let mut parts: Vec<_> = parts.filter(|(bucket, _)| bucket.len() > 1).collect();
+    parallel::each(&mut parts, |(bucket, spare)| sort_bucket(bucket, spare, low, top));
     spare
 }
 
@@ -87,8 +87,9 @@ fn scatter_in_parts(keys: &[u64], mut sorted: &mut [u64], low: u32, bits: u32) -
             sorted = rest;
         }
     }
-    parallel::map(parts.into_iter().zip(places).collect(), |(part, mut places): (&[u64], Vec<_>)| {
-        for &key in part {
+    let mut parts: Vec<_> = parts.into_iter().zip(places).collect();
+    parallel::each(&mut parts, |(part, places)| {
+        for &key in *part {
             let places = &mut places[digit(key)];
             if let Some((place, rest)) = core::mem::take(places).split_first_mut() {
                 *place = key;

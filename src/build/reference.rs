@@ -2,8 +2,7 @@
 
 use crate::geometry::{Aabb, Axis, Scalar};
 use crate::simd::{Backend, Kernel, Lanes};
-use core::mem::offset_of;
-use fearless_simd::Simd;
+use crate::simd::{Isa, KernelLanes};
 
 /// A reference to a primitive: its box and its index. All that builds and heuristics see of it.
 // Aligned, so that it is copied in whole registers: else what partitioning writes in parts of one size it reads back in
@@ -15,7 +14,7 @@ pub struct PrimRef<S = f32> {
     pub aabb: Aabb<S>,
     /// The primitive's index in the input.
     pub index: u32,
-    /// So that four scalars from the box's maximum on are all initialised.
+    /// So that a reference is copied without gaps.
     padding: u32,
 }
 
@@ -38,14 +37,12 @@ impl<S: Scalar> PrimRef<S> {
         Self { aabb, index, padding: 0 }
     }
 
-    /// The box's minimum and maximum, and no matter what in their fourth lanes.
+    /// The box's minimum, with one more of its scalars, and its maximum, with zero: what lies
+    /// behind it, the index, is a subnormal number, with which computing is slow.
     #[inline(always)]
-    pub(super) fn corners<I: Simd>(&self, isa: I) -> [S::Times4<I>; 2] {
-        const { assert!(offset_of!(Self, index) == 6 * size_of::<S>() && size_of::<S>() <= 2 * size_of::<u32>()) }
-        let scalars = core::ptr::from_ref(self).cast::<S>();
-        // SAFETY: six scalars, the index and the padding follow one another (`repr(C)`), at least as many bytes as seven
-        // scalars, all of them initialised, and any bits are a scalar.
-        unsafe { [S::Times4::load(isa, scalars), S::Times4::load(isa, scalars.add(3))] }
+    pub(super) fn corners<I: Isa>(&self, isa: I) -> [S::Times4<I>; 2] {
+        let Aabb { min: [a, b, c], max: [x, y, z] } = self.aabb;
+        [[a, b, c, x], [x, y, z, S::ZERO]].map(|corner| S::Times4::from_slice(isa, &corner))
     }
 
     /// The middle of the box: the point that decides on which side of a split the primitive goes.
@@ -91,11 +88,11 @@ pub(super) fn bounds<'r, S: Scalar>(references: impl IntoIterator<Item = &'r Pri
 struct Bounds<R>(R);
 
 impl<'r, S: Scalar, R: IntoIterator<Item = &'r PrimRef<S>>> Kernel for Bounds<R> {
-    const IS_WIDE: bool = true;
+    const IS_WIDE: bool = false;
     type Output = Aabb<S>;
 
     #[inline(always)]
-    fn run<I: Simd>(self, isa: I) -> Aabb<S> {
+    fn run<I: Isa>(self, isa: I) -> Aabb<S> {
         let (mut min, mut max) = (S::Times4::splat(isa, S::INFINITY), S::Times4::splat(isa, S::NEG_INFINITY));
         for reference in self.0 {
             let [low, high] = reference.corners::<I>(isa);

@@ -13,11 +13,11 @@
 
 use super::reference::{PrimRef, bounds};
 use crate::geometry::{Aabb, Scalar, min};
-use crate::primitive::LEAF_WIDTH;
+use crate::leaf::LEAF_WIDTH;
 use crate::simd::{Backend, Halves, Kernel, Lanes};
+use crate::simd::{Isa, KernelLanes};
 use crate::tree::{Child, Run};
 use alloc::vec::Vec;
-use fearless_simd::Simd;
 
 /// What a leaf costs beside its visits, in parts of a visit of all: for the memory.
 const PRICE: f64 = 0.06;
@@ -100,7 +100,7 @@ struct Cut<'r, S> {
 }
 
 /// What is known of a row's leaves that may end at a place, by where they begin.
-struct Ends<S: Scalar, I: Simd> {
+struct Ends<S: Scalar, I: Isa> {
     mins: [S::Times8<I>; 3],
     maxs: [S::Times8<I>; 3],
     /// The least cost of all before the leaf.
@@ -111,14 +111,14 @@ struct Ends<S: Scalar, I: Simd> {
 
 impl<S: Scalar> Kernel for Cut<'_, S> {
     const IS_WIDE: bool = true;
+    const USES_AVX512: bool = false;
     type Output = ();
 
     /// A lane for each of the last eight places that a leaf may begin at, in turns.
     #[inline(always)]
-    fn run<I: Simd>(self, isa: I) {
+    fn run<I: Isa>(self, isa: I) {
         let splat = |value: S| S::Times8::<I>::splat(isa, value);
-        // SAFETY: eight scalars.
-        let load = |row: &[S; LEAF_WIDTH]| unsafe { S::Times8::<I>::load(isa, row.as_ptr()) };
+        let load = |row: &[S; LEAF_WIDTH]| S::Times8::<I>::from_slice(isa, row);
         let numbers: [S; LEAF_WIDTH] = core::array::from_fn(|lane| S::from_count(lane as i32));
         let lanes = load(&numbers);
         let only = |lane: usize| lanes.le(splat(numbers[lane])) & splat(numbers[lane]).le(lanes);

@@ -115,17 +115,24 @@ pub(super) fn join<S: Scalar>(
         };
         top.refer(parent, moved);
     }
-    let parts = nodes.into_iter().map(|(range, task, by)| {
-        let nodes = task.map_or(&top.nodes[..], |task| subtrees[task].nodes)[range].iter();
-        nodes.map(move |node| Node { children: node.children.map(|child| by.of(child)), ..*node })
+    let lens: Vec<_> = slots.iter().map(|slots| slots.len()).collect();
+    let indices =
+        parallel::concat(fitting(&mut buffers.indices, lens.iter().sum()), &lens, &|part, places| {
+            places.extend(slots[part].iter().copied());
+        });
+    let lens: Vec<_> = nodes.iter().map(|(range, ..)| range.len()).collect();
+    let moved = parallel::concat(fitting(&mut buffers.nodes, lens.iter().sum()), &lens, &|part, places| {
+        let (range, task, by) = &nodes[part];
+        let nodes = &task.map_or(&top.nodes[..], |task| subtrees[task].nodes)[range.clone()];
+        let moved = |node: &Node<S>| Node { children: node.children.map(|child| by.of(child)), ..*node };
+        places.extend(nodes.iter().map(moved));
     });
-    let slots = slots.into_iter().map(|slots| slots.iter().copied());
-    let indices = parallel::concat(slots.collect(), |len| fitting(&mut buffers.indices, len));
-    let nodes = parallel::concat(parts.collect(), |len| fitting(&mut buffers.nodes, len));
-    let runs =
-        runs.into_iter().map(|(runs, by)| runs.iter().map(move |run| Run { leaf: by.of(run.leaf), ..*run }));
-    let runs = parallel::concat(runs.collect(), |len| fitting(&mut buffers.runs, len));
-    Subtree { nodes, root: top.root, indices, runs }
+    let lens: Vec<_> = runs.iter().map(|(runs, _)| runs.len()).collect();
+    let runs = parallel::concat(fitting(&mut buffers.runs, lens.iter().sum()), &lens, &|part, places| {
+        let (runs, by) = runs[part];
+        places.extend(runs.iter().map(|run| Run { leaf: by.of(run.leaf), ..*run }));
+    });
+    Subtree { nodes: moved, root: top.root, indices, runs }
 }
 
 /// By how much numbers of nodes and of slots grow.

@@ -1,28 +1,29 @@
 //! The options of a build, and what may be wrong with its input.
 
 mod error;
+mod job;
 mod quality;
 mod workspace;
 
 pub use error::BuildError;
+pub use job::Job;
 pub use quality::Quality;
 pub use workspace::Workspace;
 
 use crate::build::heuristic::Heuristic;
-use crate::build::{Optimise, Pace, PrimRef, Rules, Watch, Watcher, build_tree};
+use crate::build::{BuildScalar, Optimise, Pace, PrimRef, Watcher};
 use crate::bvh::Bvh;
 use crate::geometry::Scalar;
 use crate::layout::{Layout, WideTree};
-use crate::parallel::{self, in_pool};
 use crate::primitive::Primitive;
-use crate::simd::{Backend, InstructionSet, prefetch_ahead};
-use crate::tree::{MAX_DEPTH, Tree};
+use crate::simd::{InstructionSet, prefetch_ahead};
+use crate::tree::Tree;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::marker::PhantomData;
-use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use job::{Needs, Options};
 #[cfg(feature = "std")]
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// What to do with a primitive whose box has a NaN, an infinity, or a minimum above its maximum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -59,37 +60,19 @@ pub enum OnInvalid {
 #[derive(Debug)]
 pub struct Builder<P: Primitive, H = Quality, L = WideTree<<P as Primitive>::Scalar>> {
     heuristic: H,
-    max_leaf_size: Option<usize>,
-    threads: Option<usize>,
-    on_invalid: OnInvalid,
-    optimise: Option<Optimise>,
-    watcher: Option<Watcher>,
-    #[cfg(feature = "std")]
-    time_budget: Option<Duration>,
-    instruction_set: Option<InstructionSet>,
+    options: Options,
     result: PhantomData<fn() -> (P, L)>,
 }
 
 impl<P: Primitive, H: Clone, L> Clone for Builder<P, H, L> {
     fn clone(&self) -> Self {
-        Self { heuristic: self.heuristic.clone(), watcher: self.watcher.clone(), ..*self }
+        Self { heuristic: self.heuristic.clone(), options: self.options.clone(), result: PhantomData }
     }
 }
 
 impl<P: Primitive, L> Builder<P, Quality, L> {
     pub(crate) fn new() -> Self {
-        Self {
-            heuristic: Quality::default(),
-            max_leaf_size: None,
-            threads: None,
-            on_invalid: OnInvalid::default(),
-            optimise: None,
-            watcher: None,
-            #[cfg(feature = "std")]
-            time_budget: None,
-            instruction_set: None,
-            result: PhantomData,
-        }
+        Self { heuristic: Quality::default(), options: Options::default(), result: PhantomData }
     }
 }
 
@@ -131,18 +114,13 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
 
     /// The same with another heuristic or another layout.
     fn map<G, M>(self, change: impl FnOnce(H) -> G) -> Builder<P, G, M> {
-        Builder {
-            heuristic: change(self.heuristic),
-            max_leaf_size: self.max_leaf_size,
-            threads: self.threads,
-            on_invalid: self.on_invalid,
-            optimise: self.optimise,
-            watcher: self.watcher,
-            #[cfg(feature = "std")]
-            time_budget: self.time_budget,
-            instruction_set: self.instruction_set,
-            result: PhantomData,
-        }
+        Builder { heuristic: change(self.heuristic), options: self.options, result: PhantomData }
+    }
+
+    /// The same with an option set.
+    fn set(mut self, set: impl FnOnce(&mut Options)) -> Self {
+        set(&mut self.options);
+        self
     }
 
     /// How the hierarchy lies in memory, in place of the [`WideTree`] of 16: another [`Layout`].
@@ -162,7 +140,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// What queries are computed with, [`InstructionSet::best`] unless set: to compare and to test.
     #[must_use]
     pub fn instruction_set(self, instruction_set: InstructionSet) -> Self {
-        Self { instruction_set: Some(instruction_set), ..self }
+        self.set(|options| options.instruction_set = Some(instruction_set))
     }
 
     /// The largest number of primitives in a leaf of the binary tree: unless set, [`LEAF_WIDTH`](crate::LEAF_WIDTH), 8,
@@ -173,7 +151,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// quicker trees of clusters, more slowly.
     #[must_use]
     pub fn max_leaf_size(self, max_leaf_size: usize) -> Self {
-        Self { max_leaf_size: Some(max_leaf_size), ..self }
+        self.set(|options| options.max_leaf_size = Some(max_leaf_size))
     }
 
     /// Builds with a pool of `threads` threads that is started for this build, 0 meaning one for each
@@ -182,14 +160,14 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// calling thread. The tree is the same in all cases.
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {
-        Self { threads: Some(threads), ..self }
+        self.set(|options| options.threads = Some(threads))
     }
 
     /// Makes the tree better once it is built, whatever the heuristic. Unless set, it is as the heuristic says:
     /// [presets](Quality) are optimised, others are not; [`Optimise::NONE`] keeps presets from it.
     #[must_use]
     pub fn optimise(self, optimise: Optimise) -> Self {
-        Self { optimise: Some(optimise), ..self }
+        self.set(|options| options.optimise = Some(optimise))
     }
 
     /// Tells `watcher` how far the build of the tree is, from 0 to 1, every few thousand primitives at the most and from
@@ -203,7 +181,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// ```
     #[must_use]
     pub fn watch(self, watcher: impl Fn(f64) -> Pace + Send + Sync + 'static) -> Self {
-        Self { watcher: Some(Watcher(Arc::new(watcher))), ..self }
+        self.set(|options| options.watcher = Some(Watcher(Arc::new(watcher))))
     }
 
     /// This long after `build` is called it hurries: see [`Pace::Hurry`]. A valid tree is always the result, and no less
@@ -220,13 +198,13 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     #[cfg(feature = "std")]
     #[must_use]
     pub fn time_budget(self, budget: Duration) -> Self {
-        Self { time_budget: Some(budget), ..self }
+        self.set(|options| options.time_budget = Some(budget))
     }
 
     /// What to do with invalid primitives, [`OnInvalid::Reject`] unless set.
     #[must_use]
     pub fn on_invalid(self, on_invalid: OnInvalid) -> Self {
-        Self { on_invalid, ..self }
+        self.set(|options| options.on_invalid = on_invalid)
     }
 
     /// Builds the hierarchy over a list, an array, `&mesh`, any iterator of primitives, or
@@ -252,116 +230,36 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         workspace: &mut Workspace<P::Scalar>,
         primitives: impl IntoIterator<Item = P>,
     ) -> Result<Bvh<P, L>, BuildError> {
-        if self.max_leaf_size == Some(0) {
-            return Err(BuildError::ZeroLeafSize);
-        }
-        let backend = match self.instruction_set {
-            Some(set) => Backend::of(set).ok_or(BuildError::NoInstructionSet(set))?,
-            None => Backend::best(),
-        };
-        let pace = self.pace();
+        let clock = self.options.clock();
+        let backend = self.options.backend()?;
         let primitives = collect(primitives.into_iter())?;
-        let (layout, skipped) =
-            in_pool(self.threads, primitives.len(), || self.lay_out(&primitives, &pace, workspace))
-                .map_err(BuildError::ThreadPool)??;
-        drop(pace);
-        Ok(Bvh::from_parts(layout, backend, primitives, skipped))
-    }
-
-    /// The layout, and the indices of skipped primitives.
-    fn lay_out(
-        &self,
-        primitives: &[P],
-        pace: &(dyn Fn(f64) -> Pace + Sync),
-        workspace: &mut Workspace<P::Scalar>,
-    ) -> Result<(L, Vec<u32>), BuildError> {
-        self.make_room(primitives.len(), workspace);
-        let skipped = self.refer(primitives, &mut workspace.build.references)?;
-        let block_size = L::BLOCK_SIZE;
-        let rules = Rules {
+        let job = Job {
+            options: &self.options,
+            clock,
             heuristic: &self.heuristic,
-            max_leaf_size: self.max_leaf_size.unwrap_or(block_size.max(4)),
-            max_runs: if self.max_leaf_size.is_none() { L::RUNS } else { 1 },
-            block_size,
-            max_depth: MAX_DEPTH,
+            needs: Needs { block_size: L::BLOCK_SIZE, runs: L::RUNS, reserve: L::RESERVE },
+            count: primitives.len(),
+            refer: &|first, places| {
+                let mut are_valid = true;
+                places.extend(primitives[first..].iter().zip(first as u32..).map(|(primitive, index)| {
+                    prefetch_ahead(primitive);
+                    let aabb = primitive.aabb();
+                    are_valid &= aabb.is_valid();
+                    PrimRef::new(aabb, index)
+                }));
+                are_valid
+            },
         };
-        let watch = Watch::new(pace);
-        let mut tree = build_tree(&mut workspace.build, &rules, &watch).ok_or(BuildError::Stopped)?;
-        workspace.hand_over();
-        let optimise = self.optimise.or_else(|| self.heuristic.optimise());
-        if let Some(optimise) = optimise.filter(|optimise| optimise.rounds > 0) {
-            optimise.run(&mut tree, workspace.layout.words(), || watch.ask() == Pace::Steady);
-        }
-        if watch.ask() == Pace::Stop {
-            return Err(BuildError::Stopped);
-        }
-        let layout = L::lay_out(&mut tree, primitives, &mut workspace.layout);
-        workspace.build.reclaim(tree);
-        let mut layout = layout.ok_or(BuildError::TooLarge)?;
-        if !workspace.layout.keeps_rest {
-            layout.shrink();
-        }
-        Ok((layout, skipped))
-    }
-
-    /// For references, what the heuristic wants beside them, and what is made of them.
-    fn make_room(&self, count: usize, workspace: &mut Workspace<P::Scalar>) {
-        let size = size_of::<PrimRef<P::Scalar>>();
-        let beside = if self.heuristic.cluster_size() > 1 {
-            // Two lists of keys.
-            count.saturating_mul(2 * size_of::<u64>())
-        } else {
-            // A heuristic that asks for very much gets it when it splits.
-            size.saturating_mul(self.heuristic.spare(count)).min(size.saturating_mul(count))
-        };
-        // Where addresses are short, memory for later may be more than there is.
-        let later = if size_of::<usize>() >= 8 { L::RESERVE } else { 0 };
-        workspace.make_room(size.saturating_mul(count).saturating_add(beside), later.saturating_mul(count));
-    }
-
-    /// What the watcher says, and the clock.
-    fn pace(&self) -> impl Fn(f64) -> Pace + Sync + '_ {
-        #[cfg(feature = "std")]
-        let deadline = self.time_budget.and_then(|budget| Instant::now().checked_add(budget));
-        move |progress| {
-            let pace = self.watcher.as_ref().map_or(Pace::Steady, |Watcher(watcher)| watcher(progress));
-            #[cfg(feature = "std")]
-            if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
-                return pace.max(Pace::Hurry);
+        let mut layout: Option<L> = None;
+        let skipped = BuildScalar::build(&job, workspace, &mut |tree, buffers| {
+            layout = L::lay_out(tree, &primitives, buffers);
+            if let Some(layout) = layout.as_mut().filter(|_| !buffers.keeps_rest) {
+                layout.shrink();
             }
-            pace
-        }
-    }
-
-    /// Makes references to the valid primitives; the indices of the others.
-    fn refer(
-        &self,
-        primitives: &[P],
-        references: &mut Vec<PrimRef<P::Scalar>>,
-    ) -> Result<Vec<u32>, BuildError> {
-        let is_flawed = AtomicBool::new(false);
-        parallel::collect(primitives, references, |index, primitive| {
-            prefetch_ahead(primitive);
-            let reference = PrimRef::new(primitive.aabb(), index as u32);
-            if reference.flaw().is_some() {
-                is_flawed.store(true, Relaxed);
-            }
-            reference
-        });
-        let mut skipped = Vec::new();
-        if is_flawed.into_inner() {
-            let flaws = references.iter().filter_map(|reference| Some((reference.index, reference.flaw()?)));
-            match self.on_invalid {
-                OnInvalid::Skip => skipped = flaws.map(|(index, _)| index).collect(),
-                OnInvalid::Reject => {
-                    if let Some((index, flaw)) = flaws.min_by_key(|&(index, _)| index) {
-                        return Err(BuildError::InvalidPrimitive { index: index as usize, flaw });
-                    }
-                }
-            }
-            references.retain(|reference| reference.flaw().is_none());
-        }
-        Ok(skipped)
+            layout.is_some()
+        })?;
+        let layout = layout.ok_or(BuildError::TooLarge)?;
+        Ok(Bvh::from_parts(layout, backend, primitives, skipped))
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::build::{self, PrimRef};
 use crate::geometry::Scalar;
 use crate::layout;
-use crate::memory::{new_memory, recast};
+use crate::memory::recast;
 use alloc::vec::Vec;
 use core::fmt;
 use core::mem::take;
@@ -75,7 +75,7 @@ impl<S: Scalar> Workspace<S> {
         let is_enough = kept.capacity() > 0 && kept.capacity() >= len(bytes);
         // Blocks that take much less than references do have memory of their own.
         self.layout.keeps_rest = is_enough || (self.is_kept && later == 0);
-        self.build.references = if is_enough { kept } else { new_memory(len(bytes.max(later))) };
+        self.build.references = if is_enough { kept } else { Vec::with_capacity(len(bytes.max(later))) };
     }
 
     /// References are not needed any more: what they lie in is memory for optimisation, collapse and blocks.

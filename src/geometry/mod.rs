@@ -3,18 +3,19 @@
 mod aabb;
 mod axis;
 mod polygon;
-mod prepared;
 mod ray;
 mod scalar;
 mod shear;
 mod slabs;
+mod vector;
 
 pub use aabb::Aabb;
 pub use axis::Axis;
 pub(crate) use polygon::Polygon;
-pub use prepared::PreparedRay;
 pub use ray::{Ray, RayError};
 pub use scalar::Scalar;
-pub(crate) use scalar::{Vector, max, min};
+pub use scalar::ScalarParts;
+pub(crate) use scalar::{max, min};
 pub(crate) use shear::Shear;
 pub(crate) use slabs::Slabs;
+pub(crate) use vector::{cross, dot};

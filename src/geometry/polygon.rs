@@ -1,17 +1,19 @@
 //! A flat convex polygon, cut down by boxes.
 
-use super::Aabb;
+use super::{Aabb, cross, dot};
 use alloc::vec::Vec;
 use core::mem::swap;
-use glam::DVec3;
+
+/// x, y and z.
+type Point = [f64; 3];
 
 /// Its corners in turn; none if nothing is left of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Polygon {
-    corners: Vec<DVec3>,
+    corners: Vec<Point>,
     aabb: Aabb<f64>,
     /// The corners before the last cut: memory to be used again.
-    before: Vec<DVec3>,
+    before: Vec<Point>,
 }
 
 impl Polygon {
@@ -21,7 +23,7 @@ impl Polygon {
         self.corners.is_empty()
     }
 
-    pub fn set(&mut self, corners: &[DVec3]) {
+    pub fn set(&mut self, corners: &[Point]) {
         self.corners.clear();
         self.corners.extend_from_slice(corners);
         self.bound();
@@ -48,12 +50,14 @@ impl Polygon {
     fn cut(&mut self, axis: usize, plane: f64, up: f64) {
         swap(&mut self.corners, &mut self.before);
         self.corners.clear();
-        let height = |corner: DVec3| (corner[axis] - plane) * up;
+        let height = |corner: Point| (corner[axis] - plane) * up;
         let Some(&(mut from)) = self.before.last() else { return };
         for &to in &self.before {
             let (start, end) = (height(from), height(to));
             if (start < 0.0 && end > 0.0) || (start > 0.0 && end < 0.0) {
-                let mut crossing = from.lerp(to, start / (start - end));
+                let part = start / (start - end);
+                let between = |axis: usize| from[axis] + (to[axis] - from[axis]) * part;
+                let mut crossing = [between(0), between(1), between(2)];
                 // On the plane to the bit, so that the boxes below, with the same face, do not cut again.
                 crossing[axis] = plane;
                 self.corners.push(crossing);
@@ -66,13 +70,17 @@ impl Polygon {
     }
 
     fn bound(&mut self) {
-        self.aabb = Aabb::of_points(self.corners.iter().map(DVec3::to_array));
+        self.aabb = Aabb::of_points(self.corners.iter().copied());
     }
 
     pub fn area(&self) -> f64 {
         let [first, rest @ ..] = &self.corners[..] else { return 0.0 };
-        let fan = rest.windows(2).map(|pair| (pair[0] - first).cross(pair[1] - first));
-        0.5 * fan.sum::<DVec3>().length()
+        let edge = |corner: &Point| [corner[0] - first[0], corner[1] - first[1], corner[2] - first[2]];
+        let normal = rest.windows(2).fold([0.0; 3], |[x, y, z], pair| {
+            let [dx, dy, dz] = cross(edge(&pair[0]), edge(&pair[1]));
+            [x + dx, y + dy, z + dz]
+        });
+        0.5 * dot(normal, normal).sqrt()
     }
 }
 
@@ -83,7 +91,7 @@ mod tests {
     /// The area of what a box leaves of the triangle (0, 0), (4, 0), (0, 4) at z = 1.
     fn left(min: [f64; 3], max: [f64; 3]) -> f64 {
         let (mut whole, mut part) = (Polygon::EMPTY, Polygon::EMPTY);
-        whole.set(&[DVec3::new(0.0, 0.0, 1.0), DVec3::new(4.0, 0.0, 1.0), DVec3::new(0.0, 4.0, 1.0)]);
+        whole.set(&[[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]]);
         assert_eq!(whole.area(), 8.0);
         part.set_to_part(&whole, &Aabb { min, max });
         part.area()

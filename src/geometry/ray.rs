@@ -1,8 +1,6 @@
 //! The ray: an origin, a direction, and the interval of t that counts.
 
-use super::{PreparedRay, Scalar, min};
-use crate::simd::read_each;
-use core::array::from_ref;
+use super::{Scalar, min};
 use core::fmt;
 
 /// The points `origin + t * direction` with t in the closed interval [`t_min`, `t_max`].
@@ -18,6 +16,7 @@ use core::fmt;
 /// assert_eq!(Ray::<f32>::new([0.0; 3], [0.0; 3]).validate(), Err(RayError::ZeroDirection));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Ray<S = f32> {
     /// Where t = 0.
     pub origin: [S; 3],
@@ -85,21 +84,6 @@ impl<S: Scalar> Ray<S> {
         t >= self.t_min && t <= self.t_max
     }
 
-    /// With what is computed once for all boxes and primitives, to call
-    /// [`Intersect::intersect`](crate::Intersect::intersect) with. Queries do it themselves.
-    #[inline(always)]
-    pub fn prepare(&self) -> PreparedRay<S> {
-        PreparedRay::new(self)
-    }
-
-    /// A copy, as quick of a ray that has just been written as of an older one.
-    #[inline(always)]
-    pub(super) fn read(&self) -> Self {
-        let Self { origin, direction, t_min, t_max } = self;
-        let ([t_min], [t_max]) = (read_each(from_ref(t_min)), read_each(from_ref(t_max)));
-        Self { origin: read_each(origin), direction: read_each(direction), t_min, t_max }
-    }
-
     /// What makes this ray hit nothing, if anything does.
     pub fn validate(&self) -> Result<(), RayError> {
         if !self.origin.iter().all(|x| x.is_finite()) {
@@ -146,6 +130,7 @@ impl<S: Scalar> Ray<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::ScalarParts;
 
     #[test]
     fn validate_names_what_is_wrong_and_agrees_with_the_quick_check() {

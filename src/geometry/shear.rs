@@ -1,6 +1,6 @@
 //! The frame of a ray: what a point looks like from behind the ray.
 
-use super::{Scalar, Vector};
+use super::{Axis, Ray, Scalar};
 
 /// The frame in which a ray starts at the origin and runs along the third axis: a shift, a permutation
 /// of the axes and a shear (Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, JCGT 2013).
@@ -13,8 +13,9 @@ use super::{Scalar, Vector};
 pub(crate) struct Shear<S> {
     /// On the axes below.
     pub origin: [S; 3],
-    /// Which axes of space become the first, the second and the third.
-    pub axes: [usize; 3],
+    /// Which axes of space become the first, the second and the third. Of a type with three values: a compiler knows no other
+    /// bound of what it reads from memory.
+    pub axes: [Axis; 3],
     /// The direction on these axes, scaled by a power of two to about 1, so that products with it
     /// neither overflow nor underflow.
     pub direction: [S; 3],
@@ -23,9 +24,22 @@ pub(crate) struct Shear<S> {
 }
 
 /// The order of the axes that ends with each.
-const ORDERS: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+const ORDERS: [[Axis; 3]; 3] =
+    [[Axis::Y, Axis::Z, Axis::X], [Axis::Z, Axis::X, Axis::Y], [Axis::X, Axis::Y, Axis::Z]];
 
 impl<S: Scalar> Shear<S> {
+    #[inline(always)]
+    pub fn of(ray: &Ray<S>) -> Self {
+        Self::new(&ray.origin, &ray.direction)
+    }
+
+    /// The frame of the same ray in the wide scalar.
+    #[inline(always)]
+    pub fn widened(ray: &Ray<S>) -> Shear<S::Wide> {
+        let widen = |[x, y, z]: &[S; 3]| [x.widen(), y.widen(), z.widen()];
+        Shear::new(&widen(&ray.origin), &widen(&ray.direction))
+    }
+
     #[inline(always)]
     pub fn new(origin: &[S; 3], direction: &[S; 3]) -> Self {
         let [x, y, z] = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
@@ -33,7 +47,7 @@ impl<S: Scalar> Shear<S> {
         let (is_x, is_y) = ((x >= y) & (x >= z), y >= z);
         // The other two in either order: both sides of a triangle are hit.
         let axes = ORDERS[usize::from(!is_x) * (2 - usize::from(is_y))];
-        let [i, j, k] = axes;
+        let [i, j, k] = [axes[0].index(), axes[1].index(), axes[2].index()];
         let forward = direction[k];
         let scale = forward.inverse_power_of_two();
         Self {
@@ -44,20 +58,23 @@ impl<S: Scalar> Shear<S> {
         }
     }
 
-    /// Three points in the ray's frame, one in each lane of the vectors: their first, second and third
-    /// coordinates.
+    /// Three points in the ray's frame: their first, second and third coordinates.
     ///
     /// Each point's coordinates are a function of the point and the ray alone, whatever the lane and
     /// whatever the other two: triangles that share a corner agree about it.
     #[inline(always)]
-    pub fn apply(&self, [a, b, c]: [[S; 3]; 3]) -> [S::Vec3; 3] {
-        let lanes = |k: usize| {
-            let axis = self.axes[k];
-            S::Vec3::from_array([a[axis], b[axis], c[axis]]) - S::Vec3::from_array([self.origin[k]; 3])
+    pub fn apply(&self, [a, b, c]: [[S; 3]; 3]) -> [[S; 3]; 3] {
+        let relative = |k: usize| {
+            let (axis, origin) = (self.axes[k].index(), self.origin[k]);
+            [a[axis] - origin, b[axis] - origin, c[axis] - origin]
         };
-        let (x, y, z) = (lanes(0), lanes(1), lanes(2));
+        let (x, y, z) = (relative(0), relative(1), relative(2));
         let [dx, dy, dz] = self.direction;
-        [x * dz - z * dx, y * dz - z * dy, z]
+        [
+            [x[0] * dz - z[0] * dx, x[1] * dz - z[1] * dx, x[2] * dz - z[2] * dx],
+            [y[0] * dz - z[0] * dy, y[1] * dz - z[1] * dy, y[2] * dz - z[2] * dy],
+            z,
+        ]
     }
 
     /// The t at a third coordinate.

@@ -28,15 +28,13 @@ use super::{Aabb, Ray, Scalar, max, min};
 /// contains box B then near(A) <= near(B) and far(A) >= far(B), in floating point, exactly.** The
 /// agreement of tree and naive loop rests on this (see `query::accept`).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Slabs<S> {
+pub struct Slabs<S> {
     pub origin: [S; 3],
     pub inv_near: [S; 3],
     pub inv_far: [S; 3],
     /// The near plane is the box's maximum: the direction's sign bit, so that -0 is like +0.
     pub negative: [bool; 3],
     pub t_min: S,
-    /// Of the ray: see [`Ray::is_ordinary`].
-    pub is_ordinary: bool,
 }
 
 impl<S: Scalar> Slabs<S> {
@@ -53,7 +51,6 @@ impl<S: Scalar> Slabs<S> {
             inv_far: [ix * far, iy * far, iz * far],
             negative: [dx.has_minus_sign(), dy.has_minus_sign(), dz.has_minus_sign()],
             t_min: ray.t_min,
-            is_ordinary: ray.is_ordinary(),
         }
     }
 

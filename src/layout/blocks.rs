@@ -20,7 +20,7 @@ const LINE: usize = 64;
 /// `Quality::Balanced` up to two fifths slower (sponza 71 to 69, 92 and 99 ms): on a virtual machine, which waits for its host where
 /// it touches memory that was given back. The kernel had nothing to compact. Rays were quicker by 1 %.
 #[derive(Default)]
-pub(super) struct Blocks {
+pub struct Blocks {
     /// One line more than there is room for: somewhere in them the first line begins.
     words: Vec<Word>,
     /// The first line's first word.
@@ -45,7 +45,7 @@ impl Blocks {
     pub fn filled(
         memory: impl FnOnce(usize) -> Vec<Word>,
         ranges: &[Range<usize>],
-        write: impl Fn(usize, &mut Part<'_>) + Sync + Send,
+        write: &(dyn Fn(usize, &mut Part<'_>) + Sync),
     ) -> Self {
         let lines = ranges.last().map_or(0, |last| last.end).div_ceil(LINE);
         if lines == 0 {
@@ -68,8 +68,8 @@ impl Blocks {
             (rest, done) = (behind, end);
             parts.push((number, Part { words, clear: 0 }));
         }
-        parallel::map(parts, |(number, mut part)| {
-            write(number, &mut part);
+        parallel::each(&mut parts, |(number, part)| {
+            write(*number, part);
             part.clear_to(size_of_val(part.words));
         });
         // SAFETY: what is before and behind the lines was written above, and the parts, which are all lines, to their ends.
@@ -145,7 +145,7 @@ impl Blocks {
 impl Clone for Blocks {
     fn clone(&self) -> Self {
         let words = self.words();
-        let copy = |_, part: &mut Part<'_>| {
+        let copy = &|_: usize, part: &mut Part<'_>| {
             // SAFETY: words are any bytes, and any bytes are some.
             unsafe { part.get_mut(0, words.len()) }.copy_from_slice(words);
         };
@@ -154,7 +154,7 @@ impl Clone for Blocks {
 }
 
 /// A part of the memory, to be written.
-pub(super) struct Part<'m> {
+pub struct Part<'m> {
     words: &'m mut [MaybeUninit<Word>],
     /// So many bytes at the begin are initialised.
     clear: usize,
@@ -217,7 +217,7 @@ mod tests {
         // What the allocator has at hand for the same size is not clear.
         drop(core::hint::black_box(alloc::vec![Word([u64::MAX; 2]); 384 / 16 + WORDS]));
         let blocks =
-            Blocks::filled(Vec::with_capacity, &[0..100, 128..300, 320..320, 320..323], |number, part| {
+            Blocks::filled(Vec::with_capacity, &[0..100, 128..300, 320..320, 320..323], &|number, part| {
                 if number == 2 {
                     return;
                 }
@@ -235,7 +235,7 @@ mod tests {
         assert_eq!(blocks.clone().words(), blocks.words());
         // In memory for more, of which the rest is given back.
         let threefold = |len| Vec::with_capacity(3 * len);
-        let mut large = Blocks::filled(threefold, core::slice::from_ref(&(0..1000)), |_, part| {
+        let mut large = Blocks::filled(threefold, core::slice::from_ref(&(0..1000)), &|_, part| {
             // SAFETY: bytes are any bytes.
             unsafe { part.get_mut::<u8>(0, 1000) }.fill(7);
         });
@@ -243,6 +243,6 @@ mod tests {
         large.shrink();
         assert!(large.words() == exact.words() && large.words().as_ptr().addr().is_multiple_of(LINE));
         assert!(large.bytes() == exact.bytes() && before == 3 * exact.bytes());
-        assert_eq!(Blocks::filled(Vec::with_capacity, &[], |_, _| unreachable!()).words(), []);
+        assert_eq!(Blocks::filled(Vec::with_capacity, &[], &|_, _| unreachable!()).words(), []);
     }
 }

@@ -1,28 +1,22 @@
 //! The wide tree, as planned: first where every block lies, then what is in it.
 
-use super::blocks::{Blocks, Part};
+use super::blocks::Blocks;
 use super::buffers::Buffers;
-use super::form::{Form, Node};
 use super::plan::Plan;
-use super::wide::{MAX_PENDING, NOBODY, Reference, WideTree};
+use super::shape::{Contents, Kind, Shape};
+use super::wide::{MAX_PENDING, Reference};
 use crate::geometry::{Aabb, Scalar};
+use crate::leaf::LEAF_WIDTH;
 use crate::memory::Word;
 use crate::parallel;
-use crate::primitive::LEAF_WIDTH;
 use crate::tree::{Child, MAX_DEPTH, Tree};
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// What the leaves of a wide tree take of the primitives.
-pub(crate) trait Contents<S>: Sync {
-    /// How many scalars of each primitive.
-    fn operands(&self) -> usize;
-    /// Writes them, for primitives with these input indices, a row for each: a lane for each primitive, NaN in the others.
-    fn put(&self, indices: &[u32], rows: &mut [[S; LEAF_WIDTH]]);
-    /// The box of the primitive with an input index.
-    fn aabb(&self, index: u32) -> Aabb<S>;
-    /// Asks for the primitive with an input index to be brought into the cache.
-    fn prefetch(&self, index: u32);
+/// Blocks, and where the first is.
+pub struct Collapsed {
+    pub(super) blocks: Blocks,
+    pub(super) root: Option<Reference>,
 }
 
 /// Subtrees of so many primitives and fewer are sections of their own: small enough to keep threads evenly busy.
@@ -37,14 +31,6 @@ struct Block {
     /// Of the children, sixteen at the most, or of the slots.
     count: u8,
     first: u32,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    /// A node, with some of the section's children.
-    Node,
-    /// A leaf, with the primitives of some slots.
-    Leaf,
 }
 
 impl Block {
@@ -92,51 +78,52 @@ enum Failure {
     TooDeep,
 }
 
-impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
-    /// None if the references cannot tell so many places apart.
-    ///
-    /// No path through it leaves more than [`MAX_PENDING`] children behind or is longer than [`MAX_DEPTH`]: if the cheapest
-    /// collapse has one, as that of a hostile heuristic's tree may, the tree is collapsed by levels instead. Then a path of
-    /// at most `MAX_DEPTH` binary nodes becomes one of `MAX_DEPTH / log2(N)`, which leaves N - 1 children at each; and a
-    /// leaf of 2^32 primitives adds no more than 30 / log2(N) to it.
-    pub(crate) fn new(
-        tree: &mut Tree<S>,
-        contents: &impl Contents<S>,
-        buffers: &mut Buffers,
-    ) -> Option<Self> {
-        const { assert!((MAX_DEPTH + 30).div_ceil(N.ilog2() as usize) * (N - 1) <= MAX_PENDING) }
-        let plan = Plan::<S, N>::new(tree, F::leaf_cost(contents.operands()), buffers.words());
-        let cheapest = |node, roots: &mut _| plan.cheapest(node, roots);
-        let by_levels = |node, roots: &mut _| plan.by_levels(node, roots);
-        let arrangement = match Self::arrange(&plan, cheapest, contents) {
-            Err(Failure::TooDeep) => Self::arrange(&plan, by_levels, contents),
-            other => other,
-        };
-        let Arrangement { sections, root } = arrangement.ok()?;
-        let coordinates = [tree.aabb.min, tree.aabb.max];
-        Some(Self {
-            blocks: Self::fill(sections, tree, contents, |len| buffers.words_for(len)),
-            root,
-            aabb: tree.aabb,
-            len: tree.len(),
-            references: tree.indices.len(),
-            form: F::new(&mut tree.indices, contents.operands()),
-            is_ordinary: coordinates.as_flattened().iter().all(|x| x.abs() < S::LARGE_AREA),
-        })
-    }
+/// Which children of binary nodes become those of a wide one.
+type RootsOf<'p, S> = &'p (dyn Fn(usize, &mut Vec<(Child, Aabb<S>)>) + Sync);
 
+/// The wide tree with up to N children a node. None if the references cannot tell so many places
+/// apart.
+///
+/// No path through it leaves more than [`MAX_PENDING`] children behind or is longer than
+/// [`MAX_DEPTH`]: if the cheapest collapse has one, as that of a hostile heuristic's tree may, the
+/// tree is collapsed by levels instead. Then a path of at most `MAX_DEPTH` binary nodes becomes one
+/// of `MAX_DEPTH / log2(N)`, which leaves N - 1 children at each; and a leaf of 2^32 primitives
+/// adds no more than 30 / log2(N) to it.
+pub fn collapse<S: Scalar, const N: usize>(
+    tree: &Tree<S>,
+    contents: &dyn Contents<S>,
+    shape: &Shape<S>,
+    buffers: &mut Buffers,
+) -> Option<Collapsed> {
+    const { assert!((MAX_DEPTH + 30).div_ceil(N.ilog2() as usize) * (N - 1) <= MAX_PENDING) }
+    let plan = Plan::<S, N>::new(tree, shape.cost, buffers.words());
+    let work = Work { plan, contents, shape };
+    let arrangement = match work.arrange(&|node, roots| work.plan.cheapest(node, roots)) {
+        Err(Failure::TooDeep) => work.arrange(&|node, roots| work.plan.by_levels(node, roots)),
+        other => other,
+    };
+    let Arrangement { sections, root } = arrangement.ok()?;
+    let memory = |len| buffers.words_for(len);
+    Some(Collapsed { blocks: fill(&sections, tree, contents, shape, memory), root })
+}
+
+/// What does not change on the way.
+struct Work<'w, S, const N: usize> {
+    plan: Plan<'w, S, N>,
+    contents: &'w dyn Contents<S>,
+    shape: &'w Shape<S>,
+}
+
+impl<S: Scalar, const N: usize> Work<'_, S, N> {
     /// Decides where every block lies: first the top, then the subtrees that are sections of their own.
-    fn arrange(
-        plan: &Plan<'_, S, N>,
-        roots_of: impl Fn(usize, &mut Vec<(Child, Aabb<S>)>) + Sync,
-        contents: &impl Contents<S>,
-    ) -> Result<Arrangement<S>, Failure> {
+    fn arrange(&self, roots_of: RootsOf<'_, S>) -> Result<Arrangement<S>, Failure> {
+        let plan = &self.plan;
         let mut top = Section::with_capacity(0);
         let Some(child) = plan.tree.root() else {
             return Ok(Arrangement { sections: Vec::new(), root: None });
         };
         if plan.is_leaf(child, &plan.tree.aabb) {
-            let root = top.leaf::<F, N>(plan.slots(child), contents.operands())?;
+            let root = top.leaf(plan.slots(child), self.shape)?;
             return Ok(Arrangement { sections: alloc::vec![top], root: Some(root) });
         }
         let root = Open { child, aabb: plan.tree.aabb, place: None, depth: 0, pending: 0 };
@@ -145,7 +132,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         if is_small(&root) {
             subtrees.push(root);
         } else {
-            top.grow::<F, N>(root, plan, &roots_of, contents, |open| {
+            top.grow(root, self, roots_of, &mut |open| {
                 let (small, large) = if is_small(&open) { (Some(open), None) } else { (None, Some(open)) };
                 subtrees.extend(small);
                 large
@@ -155,7 +142,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         let arranged = parallel::map(subtrees, |subtree| {
             let mut section = Section::with_capacity(plan.slots(subtree.child).0 as usize / 5);
             let root = Open { place: None, ..subtree };
-            section.grow::<F, N>(root, plan, &roots_of, contents, Some).map(|()| section)
+            section.grow(root, self, roots_of, &mut Some).map(|()| section)
         });
         let (mut sections, mut end, mut root) =
             (Vec::with_capacity(1 + places.len()), top.bytes, Reference::node(0));
@@ -173,44 +160,45 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         sections.insert(0, top);
         Ok(Arrangement { sections, root: Some(root) })
     }
+}
 
-    /// Writes every block.
-    fn fill(
-        sections: Vec<Section<S>>,
-        tree: &Tree<S>,
-        contents: &impl Contents<S>,
-        memory: impl FnOnce(usize) -> Vec<Word>,
-    ) -> Blocks {
-        let ranges: Vec<_> =
-            sections.iter().map(|section| section.start..section.start + section.bytes).collect();
-        Blocks::filled(memory, &ranges, |number, part| {
-            let Section { start, blocks, children, .. } = &sections[number];
-            let mut moved = Vec::with_capacity(N);
-            let mut end = 0usize;
-            for (place, block) in blocks.iter().enumerate() {
-                // Primitives lie in the input's order: waiting for them took half of the time.
-                if let Some(leaf) = blocks.get(place + AHEAD).filter(|block| block.kind == Kind::Leaf) {
-                    tree.indices[leaf.range()].iter().for_each(|&index| contents.prefetch(index));
+/// Writes every block.
+fn fill<S: Scalar>(
+    sections: &[Section<S>],
+    tree: &Tree<S>,
+    contents: &dyn Contents<S>,
+    shape: &Shape<S>,
+    memory: impl FnOnce(usize) -> Vec<Word>,
+) -> Blocks {
+    let ranges: Vec<_> =
+        sections.iter().map(|section| section.start..section.start + section.bytes).collect();
+    Blocks::filled(memory, &ranges, &|number, part| {
+        let Section { start, blocks, children, .. } = &sections[number];
+        let mut moved = Vec::new();
+        let mut end = 0usize;
+        for (place, block) in blocks.iter().enumerate() {
+            // Primitives lie in the input's order: waiting for them took half of the time.
+            if let Some(leaf) = blocks.get(place + AHEAD).filter(|block| block.kind == Kind::Leaf) {
+                tree.indices[leaf.range()].iter().for_each(|&index| contents.prefetch(index));
+            }
+            let (bytes, align) = shape.extent(block.kind);
+            let offset = end.next_multiple_of(align);
+            end = offset + bytes;
+            match block.kind {
+                Kind::Node => {
+                    moved.clear();
+                    moved.extend(children[block.range()].iter().map(|&(aabb, child)| {
+                        let is_block = shape.has_leaves || !child.is_leaf();
+                        (aabb, if is_block { child.behind(*start) } else { child })
+                    }));
+                    (shape.put_node)(part, offset, &moved);
                 }
-                let (bytes, align) = extent::<S, F, N>(block.kind, contents.operands());
-                let offset = end.next_multiple_of(align);
-                end = offset + bytes;
-                match block.kind {
-                    Kind::Node => {
-                        moved.clear();
-                        moved.extend(children[block.range()].iter().map(|&(aabb, child)| {
-                            let is_block = F::COPIES || !child.is_leaf();
-                            (aabb, if is_block { child.behind(*start) } else { child })
-                        }));
-                        let node = F::Node::new(&moved);
-                        // SAFETY: nodes are plain data without gaps, see `Node`.
-                        unsafe { part.put(offset, node) }
-                    }
-                    Kind::Leaf => put_leaf(part, offset, &tree.indices[block.range()], contents),
+                Kind::Leaf => {
+                    shape.put_leaf(part, offset, &tree.indices[block.range()], contents);
                 }
             }
-        })
-    }
+        }
+    })
 }
 
 impl<S: Scalar> Section<S> {
@@ -222,14 +210,14 @@ impl<S: Scalar> Section<S> {
 
     /// Decides where the blocks below a node lie: the node, its leaves, then its inner children depth first, but for
     /// those of which `takes` leaves nothing.
-    fn grow<F: Form<S, N>, const N: usize>(
+    fn grow<const N: usize>(
         &mut self,
         root: Open<S>,
-        plan: &Plan<'_, S, N>,
-        roots_of: impl Fn(usize, &mut Vec<(Child, Aabb<S>)>),
-        contents: &impl Contents<S>,
-        mut takes: impl FnMut(Open<S>) -> Option<Open<S>>,
+        work: &Work<'_, S, N>,
+        roots_of: RootsOf<'_, S>,
+        takes: &mut dyn FnMut(Open<S>) -> Option<Open<S>>,
     ) -> Result<(), Failure> {
+        let Work { plan, contents, shape } = work;
         let mut open = alloc::vec![root];
         let (mut roots, mut sorted, mut keys) =
             (Vec::with_capacity(N), Vec::with_capacity(N), Vec::with_capacity(N));
@@ -239,7 +227,7 @@ impl<S: Scalar> Section<S> {
             }
             roots.clear();
             if child.is_leaf() {
-                parts((child, aabb), contents, plan.tree, N, &mut roots);
+                parts((child, aabb), *contents, plan.tree, N, &mut roots);
             } else {
                 roots_of(child.first as usize, &mut roots);
                 dissolve(&mut roots, plan);
@@ -248,13 +236,13 @@ impl<S: Scalar> Section<S> {
             sort_by_area(&roots, plan, &mut keys, &mut sorted);
             let first = self.children.len();
             let node = Block::new(Kind::Node, first..first + roots.len());
-            let offset = self.push::<F, N>(node, contents.operands());
+            let offset = self.push(node, shape);
             if let Some(place) = place {
                 self.children[place].1 = Reference::node(offset);
             }
             for &(child, aabb) in &sorted {
                 let reference = if plan.is_leaf(child, &aabb) {
-                    self.leaf::<F, N>(plan.slots(child), contents.operands())?
+                    self.leaf(plan.slots(child), shape)?
                 } else {
                     let (place, pending) = (Some(self.children.len()), pending + roots.len() - 1);
                     open.extend(takes(Open { child, aabb, place, depth: depth + 1, pending }));
@@ -270,48 +258,21 @@ impl<S: Scalar> Section<S> {
     }
 
     /// A new block behind all others; tells where it lies.
-    fn push<F: Form<S, N>, const N: usize>(&mut self, block: Block, operands: usize) -> usize {
-        let (bytes, align) = extent::<S, F, N>(block.kind, operands);
+    fn push(&mut self, block: Block, shape: &Shape<S>) -> usize {
+        let (bytes, align) = shape.extent(block.kind);
         let offset = self.bytes.next_multiple_of(align);
         self.bytes = offset + bytes;
         self.blocks.push(block);
         offset
     }
 
-    fn leaf<F: Form<S, N>, const N: usize>(
-        &mut self,
-        (count, first): (u32, u32),
-        operands: usize,
-    ) -> Result<Reference, Failure> {
-        if !F::COPIES {
+    fn leaf(&mut self, (count, first): (u32, u32), shape: &Shape<S>) -> Result<Reference, Failure> {
+        if !shape.has_leaves {
             return Reference::of_slots(first, count).ok_or(Failure::TooLarge);
         }
         let slots = first as usize..first as usize + count as usize;
-        Ok(Reference::leaf(self.push::<F, N>(Block::new(Kind::Leaf, slots), operands)))
+        Ok(Reference::leaf(self.push(Block::new(Kind::Leaf, slots), shape)))
     }
-}
-
-/// How many bytes a block takes, and of what its place is a multiple.
-fn extent<S: Scalar, F: Form<S, N>, const N: usize>(kind: Kind, operands: usize) -> (usize, usize) {
-    match kind {
-        Kind::Node => (size_of::<F::Node>(), F::Node::ALIGN),
-        Kind::Leaf => {
-            let bytes = operands * size_of::<[S; LEAF_WIDTH]>() + size_of::<[u32; LEAF_WIDTH]>();
-            let align = if operands > 0 { size_of::<[S; LEAF_WIDTH]>().min(Blocks::ALIGN) } else { 32 };
-            (bytes, align)
-        }
-    }
-}
-
-/// Writes a leaf: the rows of operands, NaN where there is no primitive, then the indices.
-fn put_leaf<S: Scalar>(part: &mut Part<'_>, offset: usize, indices: &[u32], contents: &impl Contents<S>) {
-    let operands = contents.operands();
-    // SAFETY: scalars are any bytes, and any bytes are some.
-    contents.put(indices, unsafe { part.get_mut(offset, operands) });
-    let mut places = [NOBODY; LEAF_WIDTH];
-    places[..indices.len()].copy_from_slice(indices);
-    // SAFETY: integers are any bytes, and any bytes are some.
-    unsafe { part.put(offset + operands * size_of::<[S; LEAF_WIDTH]>(), places) }
 }
 
 /// Puts the runs of large leaves in their places, the largest leaf's first, while there is room in the node: a step less for each
@@ -365,7 +326,7 @@ fn sort_by_area<S: Scalar, const N: usize>(
 /// A leaf too large for one block, with its box, as at most `n` parts: those that it was cut into, else equal ones.
 fn parts<S: Scalar>(
     (leaf, within): (Child, Aabb<S>),
-    contents: &impl Contents<S>,
+    contents: &dyn Contents<S>,
     tree: &Tree<S>,
     n: usize,
     roots: &mut Vec<(Child, Aabb<S>)>,

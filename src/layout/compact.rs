@@ -11,8 +11,8 @@
 //! Through Compressed Wide BVHs, HPG 2017; but that the whole origin and scales as scalars are kept, which are ready to be
 //! used, and a reference for each child, since leaves do not lie beside each other.
 //!
-//! What lies in no leaf is fetched from the primitives: [`rows`](Form::rows) writes their operands into rows on the thread's
-//! stack, in which they are tested all at once. Refused, with shares of the rate in `Fast` mode on sponza and dragon:
+//! What lies in no leaf is fetched from the primitives: the leaf's test writes their operands into rows on the thread's stack,
+//! in which they are tested all at once. Refused, with shares of the rate in `Fast` mode on sponza and dragon:
 //!
 //! - asking them one by one: 0 to -14 % in trees with leaves of 6 primitives, +3 to -8 % with leaves of 3.4, in part noise;
 //! - gathering the next 8 slots whatever the leaf's size, without a branch: 0 to -8 %, for more primitives are touched;
@@ -24,10 +24,9 @@ use super::grid::Grid;
 use super::plan::LeafCost;
 use super::wide::{NOBODY, Reference, WideTree};
 use crate::geometry::{Aabb, Scalar, min};
-use crate::primitive::{Intersect, LEAF_WIDTH, Leaf};
+use crate::leaf::{GATHERED, LEAF_WIDTH};
 use crate::simd::Lanes;
 use alloc::vec::Vec;
-use core::mem::MaybeUninit;
 
 /// The form for few bytes.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +59,6 @@ const _: () = assert!(size_of::<CompactNode<f32, 16>>() == 192 && size_of::<Comp
 // SAFETY: scalars and integers, without gaps: see above.
 unsafe impl<S: Scalar, const N: usize> Node<S, N> for CompactNode<S, N> {
     const ALIGN: usize = 64;
-    const ROW: usize = N;
 
     fn new(children: &[(Aabb<S>, Reference)]) -> Self {
         let everything = children.iter().fold(Aabb::EMPTY, |all, (aabb, _)| all.union(*aabb));
@@ -92,15 +90,13 @@ unsafe impl<S: Scalar, const N: usize> Node<S, N> for CompactNode<S, N> {
     }
 
     #[inline(always)]
-    unsafe fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, first: usize) -> [L; 2] {
+    fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, maxima_first: bool) -> [L; 2] {
         const { assert!(N == L::COUNT) }
-        let rows = self.places[axis].as_ptr().cast::<u8>();
+        let rows = &self.places[axis];
         let (origin, scale) = (L::splat(isa, self.grid.origin[axis]), L::splat(isa, self.grid.scale[axis]));
-        let row = |place: usize| {
-            // SAFETY: one of the axis' two rows of N bytes, by the caller's word.
-            origin + unsafe { L::load_bytes(isa, rows.add(place)) } * scale
-        };
-        [row(first), row(first ^ Self::ROW)]
+        let first = usize::from(maxima_first);
+        let (one, other) = (L::from_bytes(isa, &rows[first]), L::from_bytes(isa, &rows[1 - first]));
+        [origin + one * scale, origin + other * scale]
     }
 
     fn child(&self, lane: usize) -> Option<(Aabb<S>, Reference)> {
@@ -111,16 +107,8 @@ unsafe impl<S: Scalar, const N: usize> Node<S, N> for CompactNode<S, N> {
     }
 }
 
-/// Operands up to which they are gathered: primitives with more are asked one by one.
-const ROOM: usize = 16;
-
-/// Where operands are gathered.
-#[repr(align(64))]
-pub struct Room<S>([MaybeUninit<[S; LEAF_WIDTH]>; ROOM]);
-
 impl<S: Scalar, const N: usize> Form<S, N> for Compact {
     type Node = CompactNode<S, N>;
-    type Room = Room<S>;
     const COPIES: bool = false;
 
     fn new(indices: &mut Vec<u32>, _: usize) -> Self {
@@ -139,13 +127,13 @@ impl<S: Scalar, const N: usize> Form<S, N> for Compact {
         0
     }
 
-    fn bytes(&self) -> usize {
-        size_of::<u32>() * self.indices.capacity()
+    #[inline(always)]
+    fn has_operands(&self, operands: usize) -> bool {
+        operands <= GATHERED
     }
 
-    #[inline(always)]
-    fn tests_at_once(operands: usize) -> bool {
-        operands > 0 && operands <= ROOM
+    fn bytes(&self) -> usize {
+        size_of::<u32>() * self.indices.capacity()
     }
 
     fn leaf_cost(_: usize) -> LeafCost {
@@ -160,11 +148,13 @@ impl<S: Scalar, const N: usize> Form<S, N> for Compact {
     }
 
     #[inline(always)]
-    fn indices(tree: &WideTree<S, N, Self>, leaf: Reference, _: usize) -> &[u32; LEAF_WIDTH] {
-        let (first, _) = leaf.slots();
-        debug_assert!(first + LEAF_WIDTH <= tree.form.indices.len());
-        // SAFETY: a leaf's slots are the tree's, by construction of the tree, and so many indices follow any (`new`).
-        unsafe { &*tree.form.indices.as_ptr().add(first).cast() }
+    unsafe fn indices(tree: &WideTree<S, N, Self>, leaf: Reference, _: usize) -> &[u32; LEAF_WIDTH] {
+        // Checked: it takes no time beside what leaves gather.
+        tree.form.indices[leaf.slots().0..].first_chunk().expect("so many follow any slot")
+    }
+
+    fn indices_at(tree: &WideTree<S, N, Self>, leaf: Reference) -> Option<&[u32; LEAF_WIDTH]> {
+        tree.form.indices.get(leaf.slots().0..)?.first_chunk()
     }
 
     #[inline(always)]
@@ -173,37 +163,8 @@ impl<S: Scalar, const N: usize> Form<S, N> for Compact {
     }
 
     #[inline(always)]
-    fn room() -> Room<S> {
-        Room([const { MaybeUninit::uninit() }; ROOM])
-    }
-
-    #[inline(always)]
-    fn rows<'m, P: Intersect<Scalar = S>>(
-        tree: &'m WideTree<S, N, Self>,
-        leaf: Reference,
-        primitives: &[P],
-        room: &'m mut Room<S>,
-    ) -> &'m [[S; LEAF_WIDTH]] {
-        let operands = const {
-            let operands = <P::Leaf as Leaf<S, P::Payload>>::OPERANDS;
-            if operands <= ROOM { operands } else { 0 }
-        };
-        let rows = &mut room.0[..operands];
-        for row in rows.iter_mut() {
-            row.write([S::from_f64(f64::NAN); LEAF_WIDTH]);
-        }
-        // SAFETY: all have been written.
-        let rows: &mut [[S; LEAF_WIDTH]] = unsafe { &mut *(core::ptr::from_mut(rows) as *mut _) };
-        let (_, count) = leaf.slots();
-        let mut values = [S::ZERO; ROOM];
-        let values = &mut values[..operands];
-        for (lane, &index) in Self::indices(tree, leaf, operands).iter().enumerate().take(count) {
-            primitives[index as usize].put_operands(values);
-            for (row, value) in rows.iter_mut().zip(values.iter()) {
-                row[lane] = *value;
-            }
-        }
-        rows
+    unsafe fn rows(_: &WideTree<S, N, Self>, _: Reference, _: usize) -> &[[S; LEAF_WIDTH]] {
+        &[]
     }
 }
 
@@ -212,8 +173,8 @@ mod tests {
     use super::*;
     use crate::InstructionSet;
     use crate::simd::{Backend, Count, Kernel, Width};
+    use crate::simd::{Isa, KernelLanes};
     use core::array::from_fn;
-    use fearless_simd::Simd;
 
     /// The planes of a node in lanes: by axis, minima, then maxima.
     struct Planes<'a, S: Scalar, const N: usize>(&'a CompactNode<S, N>);
@@ -226,10 +187,9 @@ mod tests {
         type Output = [[[S; N]; 2]; 3];
 
         #[inline(always)]
-        fn run<I: Simd>(self, isa: I) -> Self::Output {
+        fn run<I: Isa>(self, isa: I) -> Self::Output {
             from_fn(|axis| {
-                // SAFETY: one of three axes, and its first row.
-                let planes = unsafe { self.0.planes::<<Count<N> as Width>::Lanes<S, I>>(isa, axis, 0) };
+                let planes = self.0.planes::<<Count<N> as Width>::Lanes<S, I>>(isa, axis, false);
                 planes.map(|planes| {
                     let mut scalars = [S::ZERO; N];
                     planes.store(&mut scalars);

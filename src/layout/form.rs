@@ -3,16 +3,13 @@
 use super::plan::LeafCost;
 use super::wide::{Reference, WideTree};
 use crate::geometry::{Aabb, Scalar};
-use crate::primitive::{Intersect, LEAF_WIDTH};
+use crate::leaf::LEAF_WIDTH;
 use crate::simd::Lanes;
 use alloc::vec::Vec;
 
 /// A way to write nodes and leaves.
 pub trait Form<S: Scalar, const N: usize>: Clone + PartialEq + Send + Sync + 'static {
     type Node: Node<S, N>;
-    /// Where operands are gathered that do not lie in the tree.
-    type Room;
-
     /// Whether leaves are blocks with copies of their primitives' operands; else they are ranges of slots.
     const COPIES: bool;
 
@@ -25,11 +22,11 @@ pub trait Form<S: Scalar, const N: usize>: Clone + PartialEq + Send + Sync + 'st
     /// How many scalars of each primitive lie in its leaf.
     fn operands(&self) -> usize;
 
+    /// Whether leaves have so many of each primitive, or will have them gathered.
+    fn has_operands(&self, operands: usize) -> bool;
+
     /// Bytes of memory beside the blocks.
     fn bytes(&self) -> usize;
-
-    /// Whether primitives with so many operands are tested all at once; else one by one.
-    fn tests_at_once(operands: usize) -> bool;
 
     /// What it costs to visit a leaf of such primitives.
     fn leaf_cost(operands: usize) -> LeafCost;
@@ -38,21 +35,23 @@ pub trait Form<S: Scalar, const N: usize>: Clone + PartialEq + Send + Sync + 'st
     fn prefetch(tree: &WideTree<S, N, Self>, place: Reference);
 
     /// The input's indices of a leaf's primitives, in the lanes that it [`has`](Self::has).
-    fn indices(tree: &WideTree<S, N, Self>, leaf: Reference, operands: usize) -> &[u32; LEAF_WIDTH];
+    ///
+    /// # Safety
+    /// `leaf` is one of the tree's leaves, and `operands` is what the tree keeps of each primitive in its leaf.
+    unsafe fn indices(tree: &WideTree<S, N, Self>, leaf: Reference, operands: usize) -> &[u32; LEAF_WIDTH];
+
+    /// The same of any leaf; none if the tree has no such.
+    fn indices_at(tree: &WideTree<S, N, Self>, leaf: Reference) -> Option<&[u32; LEAF_WIDTH]>;
 
     /// Whether there is a primitive in a lane, where `index` lies.
     fn has(leaf: Reference, lane: usize, index: u32) -> bool;
 
-    /// Room for operands, not cleared.
-    fn room() -> Self::Room;
-
-    /// The operands of a leaf's primitives, row by row, NaN where there is no primitive.
-    fn rows<'m, P: Intersect<Scalar = S>>(
-        tree: &'m WideTree<S, N, Self>,
-        leaf: Reference,
-        primitives: &[P],
-        room: &'m mut Self::Room,
-    ) -> &'m [[S; LEAF_WIDTH]];
+    /// So many operands of a leaf's primitives, row by row, NaN where there is no primitive; none if they would have to be
+    /// gathered.
+    ///
+    /// # Safety
+    /// As for [`indices`](Self::indices).
+    unsafe fn rows(tree: &WideTree<S, N, Self>, leaf: Reference, operands: usize) -> &[[S; LEAF_WIDTH]];
 }
 
 /// An inner node.
@@ -62,9 +61,6 @@ pub trait Form<S: Scalar, const N: usize>: Clone + PartialEq + Send + Sync + 'st
 pub unsafe trait Node<S: Scalar, const N: usize>: Copy + Send + Sync {
     /// Where nodes begin.
     const ALIGN: usize;
-    /// Bytes from one row of planes to the next; by axis, minima, then maxima.
-    const ROW: usize;
-
     /// With these children in the lowest lanes.
     fn new(children: &[(Aabb<S>, Reference)]) -> Self;
 
@@ -73,12 +69,8 @@ pub unsafe trait Node<S: Scalar, const N: usize>: Copy + Send + Sync {
     /// Bits of the lanes in which there may be children: no ray meets the boxes in others of them.
     fn lanes(&self) -> u32;
 
-    /// The two rows of planes across an axis, the minima before the maxima if `first` is 0, after them if it is
-    /// [`ROW`](Self::ROW).
-    ///
-    /// # Safety
-    /// `first` is 0 or [`ROW`](Self::ROW), `axis` is 0, 1 or 2.
-    unsafe fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, first: usize) -> [L; 2];
+    /// The two rows of planes across an axis, 0, 1 or 2: the minima before the maxima, or the other way round.
+    fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, maxima_first: bool) -> [L; 2];
 
     /// The box and the place of a child; none if there is none in this lane.
     fn child(&self, lane: usize) -> Option<(Aabb<S>, Reference)>;

@@ -8,22 +8,29 @@ mod form;
 mod grid;
 mod packed;
 mod plan;
+mod shape;
 mod wide;
 
-pub(crate) use buffers::Buffers;
-pub(crate) use collapse::Contents;
+pub use buffers::Buffers;
+pub use collapse::{Collapsed, collapse};
+pub(crate) use compact::Compact;
 pub(crate) use form::{Form, Node as WideNode};
-#[cfg(test)]
 pub(crate) use packed::Packed;
+pub use shape::{Contents, Shape};
 pub use wide::{CompactTree, WideTree};
-pub(crate) use wide::{MAX_PENDING, Reference};
+pub(crate) use wide::{MAX_PENDING, NOBODY, Reference};
 
-use crate::geometry::{Aabb, Scalar};
-use crate::primitive::{Intersect, LEAF_WIDTH, Leaf, Primitive};
-use crate::simd::{Count, Width, prefetch};
+use crate::build::BuildScalar;
+use crate::geometry::{Aabb, Scalar, ScalarParts};
+use crate::leaf::sealed::LeafKind;
+use crate::leaf::{LEAF_WIDTH, Primitives, PutOperands};
+use crate::primitive::{Intersect, Primitive};
+use crate::simd::prefetch;
 use crate::tree::{Child, Node, Tree};
-use alloc::vec::Vec;
 use core::mem::take;
+
+/// Children of a node. The code is generic over it; kernels are compiled for this one.
+pub(crate) const WIDTH: usize = 16;
 
 /// How a hierarchy lies in memory: [`WideTree`], the default, for speed; [`CompactTree`], for few bytes; [`Tree`], as it was
 /// built.
@@ -73,6 +80,16 @@ pub trait Outline<S: Scalar> {
     fn bytes(&self) -> usize;
     /// Shows what is in a place, one by one. False if there is no such place.
     fn open(&self, place: Self::Place, show: impl FnMut(Part<S, Self::Place>)) -> bool;
+}
+
+impl<S, B> Part<S, B> {
+    /// The place of a child.
+    pub fn child(self) -> Option<B> {
+        match self {
+            Self::Child(_, place) => Some(place),
+            Self::Primitive(_) => None,
+        }
+    }
 }
 
 /// What is in a node or in a leaf.
@@ -150,11 +167,12 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> Outline<S> for WideTree<S, N, F> 
     }
     fn open(&self, place: Reference, show: impl FnMut(Part<S, Reference>)) -> bool {
         if place.is_leaf() {
-            let indices = F::indices(self, place, self.form.operands()).iter().copied().enumerate();
+            let Some(indices) = F::indices_at(self, place) else { return false };
+            let indices = indices.iter().copied().enumerate();
             let indices = indices.filter(|&(lane, index)| F::has(place, lane, index));
             indices.map(|(_, index)| Part::Primitive(index)).for_each(show);
         } else {
-            let node = self.node(place);
+            let Some(node) = self.node_at(place) else { return false };
             let children = (0..N).filter_map(|lane| node.child(lane));
             children.map(|(aabb, place)| Part::Child(aabb, place)).for_each(show);
         }
@@ -162,25 +180,31 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> Outline<S> for WideTree<S, N, F> 
     }
 }
 
-impl<P: Intersect, const N: usize, F: Form<P::Scalar, N>> Layout<P> for WideTree<P::Scalar, N, F>
-where
-    Count<N>: Width,
-{
+impl<P: Intersect, F: Form<P::Scalar, WIDTH>> Layout<P> for WideTree<P::Scalar, WIDTH, F> {
     /// Where operands have to be gathered first, each counts.
-    const BLOCK_SIZE: usize = if F::COPIES && <P::Leaf as Leaf<_, _>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
-    const RUNS: usize = N;
+    const BLOCK_SIZE: usize =
+        if F::COPIES && <P::Leaf as LeafKind<_, P::Payload>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
+    const RUNS: usize = WIDTH;
     /// For leaves of five primitives, and nodes whose children have eight each: what trees of splits take at the most in the README's
     /// scenes. What is not needed goes back.
     const RESERVE: usize = if <Self as Layout<P>>::BLOCK_SIZE > 1 {
-        let leaf = <P::Leaf as Leaf<_, P::Payload>>::OPERANDS * size_of::<[P::Scalar; LEAF_WIDTH]>()
+        let leaf = <P::Leaf as LeafKind<_, P::Payload>>::OPERANDS * size_of::<[P::Scalar; LEAF_WIDTH]>()
             + size_of::<[u32; LEAF_WIDTH]>();
-        leaf / 5 + size_of::<F::Node>() / (8 * N)
+        leaf / 5 + size_of::<F::Node>() / (8 * WIDTH)
     } else {
         0
     };
 
     fn lay_out(tree: &mut Tree<P::Scalar>, primitives: &[P], buffers: &mut Buffers) -> Option<Self> {
-        Self::new(tree, &primitives, buffers)
+        let operands = <P::Leaf as LeafKind<_, P::Payload>>::OPERANDS;
+        let shape = Shape::of::<WIDTH, F>(operands);
+        let Collapsed { blocks, root } = P::Scalar::collapse(tree, &primitives, &shape, buffers)?;
+        let Tree { aabb, .. } = *tree;
+        let (len, references) = (tree.len(), tree.indices.len());
+        let form = F::new(&mut tree.indices, operands);
+        let coordinates = [aabb.min, aabb.max];
+        let is_ordinary = coordinates.as_flattened().iter().all(|x| x.abs() < P::Scalar::LARGE_AREA);
+        Some(Self { blocks, root, aabb, len, references, form, is_ordinary })
     }
 
     fn shrink(&mut self) {
@@ -194,26 +218,8 @@ where
 }
 
 impl<P: Intersect> Contents<P::Scalar> for &[P] {
-    fn operands(&self) -> usize {
-        <P::Leaf as Leaf<_, _>>::OPERANDS
-    }
     fn put(&self, indices: &[u32], rows: &mut [[P::Scalar; LEAF_WIDTH]]) {
-        // Of a size that the compiler knows, so that few operands stay in registers on their way: through memory, where they are
-        // written in parts of one size and read in parts of another, a quick build took a fifteenth longer.
-        let (mut few, mut many) = ([P::Scalar::ZERO; 16], Vec::new());
-        let values = few.get_mut(..<P::Leaf as Leaf<_, _>>::OPERANDS).unwrap_or_else(|| {
-            many.resize(<P::Leaf as Leaf<_, _>>::OPERANDS, P::Scalar::ZERO);
-            &mut many
-        });
-        for (lane, &index) in indices.iter().enumerate() {
-            self[index as usize].put_operands(values);
-            for (row, &value) in rows.iter_mut().zip(&*values) {
-                row[lane] = value;
-            }
-        }
-        for row in rows {
-            row[indices.len()..].fill(P::Scalar::from_f64(f64::NAN));
-        }
+        Primitives(self).put_rows(indices, rows);
     }
     fn aabb(&self, index: u32) -> Aabb<P::Scalar> {
         self[index as usize].aabb()

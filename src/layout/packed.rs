@@ -12,7 +12,7 @@ use super::form::{Form, Node};
 use super::plan::LeafCost;
 use super::wide::{NOBODY, Reference, WideTree};
 use crate::geometry::{Aabb, Scalar};
-use crate::primitive::{Intersect, LEAF_WIDTH, Leaf};
+use crate::leaf::LEAF_WIDTH;
 use crate::simd::Lanes;
 use alloc::vec::Vec;
 
@@ -44,7 +44,6 @@ const _: () = assert!(has_no_gaps::<f64, 4>() && has_no_gaps::<f64, 8>() && has_
 unsafe impl<S: Scalar, const N: usize> Node<S, N> for WideNode<S, N> {
     /// Rows of planes that are as long as a line begin with one.
     const ALIGN: usize = if size_of::<[S; N]>() >= 64 { 64 } else { 32 };
-    const ROW: usize = size_of::<[S; N]>();
 
     fn new(children: &[(Aabb<S>, Reference)]) -> Self {
         let nothing = [[S::INFINITY; N], [S::NEG_INFINITY; N]];
@@ -70,14 +69,11 @@ unsafe impl<S: Scalar, const N: usize> Node<S, N> for WideNode<S, N> {
     }
 
     #[inline(always)]
-    unsafe fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, first: usize) -> [L; 2] {
+    fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, maxima_first: bool) -> [L; 2] {
         const { assert!(N == L::COUNT) }
-        let rows = self.planes[axis].as_ptr().cast::<u8>();
-        let row = |place: usize| {
-            // SAFETY: one of the axis' two rows of N scalars, by the caller's word.
-            unsafe { L::load(isa, rows.add(place).cast()) }
-        };
-        [row(first), row(first ^ Self::ROW)]
+        let rows = &self.planes[axis];
+        let first = usize::from(maxima_first);
+        [L::from_slice(isa, &rows[first]), L::from_slice(isa, &rows[1 - first])]
     }
 
     fn child(&self, lane: usize) -> Option<(Aabb<S>, Reference)> {
@@ -89,7 +85,6 @@ unsafe impl<S: Scalar, const N: usize> Node<S, N> for WideNode<S, N> {
 
 impl<S: Scalar, const N: usize> Form<S, N> for Packed {
     type Node = WideNode<S, N>;
-    type Room = ();
     const COPIES: bool = true;
 
     fn new(_: &mut Vec<u32>, operands: usize) -> Self {
@@ -104,13 +99,13 @@ impl<S: Scalar, const N: usize> Form<S, N> for Packed {
         self.operands
     }
 
-    fn bytes(&self) -> usize {
-        0
+    #[inline(always)]
+    fn has_operands(&self, operands: usize) -> bool {
+        self.operands == operands
     }
 
-    #[inline(always)]
-    fn tests_at_once(operands: usize) -> bool {
-        operands > 0
+    fn bytes(&self) -> usize {
+        0
     }
 
     fn leaf_cost(operands: usize) -> LeafCost {
@@ -123,10 +118,17 @@ impl<S: Scalar, const N: usize> Form<S, N> for Packed {
     }
 
     #[inline(always)]
-    fn indices(tree: &WideTree<S, N>, leaf: Reference, operands: usize) -> &[u32; LEAF_WIDTH] {
+    unsafe fn indices(tree: &WideTree<S, N>, leaf: Reference, operands: usize) -> &[u32; LEAF_WIDTH] {
         debug_assert_eq!(tree.form.operands, operands);
-        // SAFETY: indices are any bytes, and a leaf lies there: see the tree. They follow its operands' rows.
+        // SAFETY: indices are any bytes, and a leaf lies there, by the caller's word. They follow its operands' rows.
         unsafe { tree.blocks.get(leaf.offset() + operands * size_of::<[S; LEAF_WIDTH]>()) }
+    }
+
+    fn indices_at(tree: &WideTree<S, N>, leaf: Reference) -> Option<&[u32; LEAF_WIDTH]> {
+        let offset = leaf.offset() + tree.form.operands * size_of::<[S; LEAF_WIDTH]>();
+        let fits = offset + size_of::<[u32; LEAF_WIDTH]>() <= tree.blocks.len();
+        // SAFETY: indices are any bytes, and these lie inside of the blocks, at a multiple of eight.
+        fits.then(|| unsafe { tree.blocks.get(offset) })
     }
 
     #[inline(always)]
@@ -135,16 +137,9 @@ impl<S: Scalar, const N: usize> Form<S, N> for Packed {
     }
 
     #[inline(always)]
-    fn room() {}
-
-    #[inline(always)]
-    fn rows<'m, P: Intersect<Scalar = S>>(
-        tree: &'m WideTree<S, N>,
-        leaf: Reference,
-        _: &[P],
-        _: &'m mut (),
-    ) -> &'m [[S; LEAF_WIDTH]] {
-        // SAFETY: scalars are any bytes, and a leaf lies there: see the tree. It begins with its operands' rows.
-        unsafe { tree.blocks.get_slice(leaf.offset(), <P::Leaf as Leaf<_, P::Payload>>::OPERANDS) }
+    unsafe fn rows(tree: &WideTree<S, N>, leaf: Reference, operands: usize) -> &[[S; LEAF_WIDTH]] {
+        debug_assert_eq!(tree.form.operands, operands);
+        // SAFETY: scalars are any bytes, and a leaf lies there, by the caller's word. It begins with its operands' rows.
+        unsafe { tree.blocks.get_slice(leaf.offset(), operands) }
     }
 }

@@ -18,9 +18,9 @@
 //! the build takes as long.
 
 use crate::geometry::{Aabb, Scalar};
+use crate::leaf::LEAF_WIDTH;
 use crate::memory::{Word, lent};
 use crate::parallel;
-use crate::primitive::LEAF_WIDTH;
 use crate::tree::{Child, MAX_DEPTH, Tree};
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -84,10 +84,10 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
             (rest, done) = (behind, nodes.end);
         }
         // Children lie behind their parents.
-        parallel::map(parts, |(first, weights)| {
+        parallel::each(&mut parts, |(first, weights)| {
             for place in (0..weights.len()).rev() {
                 let (until, below) = weights.split_at_mut(place + 1);
-                until[place] = plan.weight(first + place, below);
+                until[place] = plan.weight(*first + place, below);
             }
         });
         for index in top.into_iter().rev() {

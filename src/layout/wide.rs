@@ -5,10 +5,10 @@
 
 use super::blocks::Blocks;
 use super::compact::Compact;
-use super::form::Form;
+use super::form::{Form, Node};
 use super::packed::Packed;
 use crate::geometry::{Aabb, Scalar};
-use crate::primitive::LEAF_WIDTH;
+use crate::leaf::LEAF_WIDTH;
 use crate::simd::Window;
 use crate::tree::TreeReport;
 use core::fmt;
@@ -174,9 +174,32 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         self.is_ordinary
     }
 
+    /// Scalars of each primitive that lie in its leaf, or would be gathered.
     #[inline(always)]
-    pub(crate) fn node(&self, reference: Reference) -> &F::Node {
-        // SAFETY: nodes are any bytes, and one lies there: see the type.
+    pub(crate) fn operands(&self) -> usize {
+        self.form.operands()
+    }
+
+    /// Whether leaves have so many of each primitive, or will have them gathered.
+    #[inline(always)]
+    pub(crate) fn has_operands(&self, operands: usize) -> bool {
+        self.form.has_operands(operands)
+    }
+
+    /// # Safety
+    /// `reference` is that of one of the tree's nodes: its root, or a child of one of them.
+    #[inline(always)]
+    pub(crate) unsafe fn node(&self, reference: Reference) -> &F::Node {
+        // SAFETY: nodes are any bytes, and one lies there, by the caller's word.
         unsafe { self.blocks.get(reference.offset()) }
+    }
+
+    /// The node at any place; none if there is no room for one.
+    pub(super) fn node_at(&self, reference: Reference) -> Option<&F::Node> {
+        let offset = reference.offset();
+        let fits =
+            offset + size_of::<F::Node>() <= self.blocks.len() && offset.is_multiple_of(F::Node::ALIGN);
+        // SAFETY: nodes are any bytes, and these lie inside of the blocks, aligned, as was just asked.
+        fits.then(|| unsafe { self.blocks.get(offset) })
     }
 }

@@ -1,7 +1,8 @@
 //! The box as a primitive: its surface is what rays hit.
 
-use super::{Intersect, OneByOne, Primitive};
-use crate::geometry::{Aabb, PreparedRay, Scalar, max, min};
+use super::{Intersect, Primitive};
+use crate::geometry::{Aabb, Ray, Scalar, max, min};
+use crate::leaf::OneByOne;
 
 impl<S: Scalar> Primitive for Aabb<S> {
     type Scalar = S;
@@ -18,7 +19,7 @@ impl<S: Scalar> Intersect for Aabb<S> {
 
     /// A ray from inside hits the surface on the way out; a ray in the plane of a face hits its edge.
     #[inline(always)]
-    fn intersect(&self, ray: &PreparedRay<S>) -> Option<(S, ())> {
+    fn intersect(&self, ray: &Ray<S>) -> Option<(S, ())> {
         let (mut near, mut far) = (S::NEG_INFINITY, S::INFINITY);
         for axis in 0..3 {
             let inv = S::ONE / ray.direction[axis];
@@ -38,23 +39,22 @@ impl<S: Scalar> Intersect for Aabb<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Ray;
 
     const UNIT: Aabb = Aabb { min: [0.0; 3], max: [1.0; 3] };
 
     #[test]
     fn from_outside_the_front_from_inside_the_back() {
         let ray = Ray::new([-2.0, 0.5, 0.5], [1.0, 0.0, -0.0]);
-        assert_eq!(UNIT.intersect(&ray.prepare()), Some((2.0, ())));
-        assert_eq!(UNIT.intersect(&ray.with_interval(2.5, 9.0).prepare()), Some((3.0, ())));
-        assert_eq!(UNIT.intersect(&ray.with_interval(3.5, 9.0).prepare()), None);
-        assert_eq!(UNIT.intersect(&Ray::new([-2.0, 1.5, 0.5], [1.0, 0.0, 0.0]).prepare()), None);
+        assert_eq!(UNIT.intersect(&ray), Some((2.0, ())));
+        assert_eq!(UNIT.intersect(&ray.with_interval(2.5, 9.0)), Some((3.0, ())));
+        assert_eq!(UNIT.intersect(&ray.with_interval(3.5, 9.0)), None);
+        assert_eq!(UNIT.intersect(&Ray::new([-2.0, 1.5, 0.5], [1.0, 0.0, 0.0])), None);
     }
 
     #[test]
     fn a_ray_in_the_plane_of_a_face_hits() {
         for y in [0.0, 1.0] {
-            assert_eq!(UNIT.intersect(&Ray::new([2.0, y, 0.5], [-1.0, 0.0, 0.0]).prepare()), Some((1.0, ())));
+            assert_eq!(UNIT.intersect(&Ray::new([2.0, y, 0.5], [-1.0, 0.0, 0.0])), Some((1.0, ())));
         }
     }
 }

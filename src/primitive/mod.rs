@@ -1,21 +1,23 @@
 //! What a tree can hold: anything with bounds; and what a ray can hit.
 
 mod aabb;
-mod leaf;
+mod accept;
 mod sphere;
 mod surface_point;
 mod triangle;
 
-pub use leaf::{Found, LEAF_WIDTH, Leaf, OneByOne, Operands};
-pub use sphere::{Sphere, SphereLeaf};
+pub(crate) use accept::{accept, precedes};
+pub use sphere::Sphere;
 pub use surface_point::SurfacePoint;
+pub(crate) use triangle::DOUBT;
 pub use triangle::{
-    Barycentrics, Corners, Fast, FastLeaf, MeshError, MeshTriangle, Precise, PreciseLeaf, Triangle,
-    TriangleLeaf, TriangleMesh, Watertight, WatertightLeaf,
+    Barycentrics, Corners, Fast, MeshError, MeshTriangle, Precise, Triangle, TriangleMesh, Watertight,
 };
 
-use crate::geometry::{Aabb, PreparedRay, Scalar};
+use crate::geometry::{Aabb, Ray, Scalar};
+use crate::leaf::Leaf;
 use alloc::boxed::Box;
+use alloc::sync::Arc;
 
 /// Something with a bounding box: all that a tree needs to be built. `Sync`, for builds read it on several threads.
 ///
@@ -53,7 +55,7 @@ pub trait Primitive: Sync {
 /// A primitive that rays can hit.
 ///
 /// ```
-/// use bvhkit::{Aabb, Bvh, Intersect, OneByOne, PreparedRay, Primitive, Ray};
+/// use bvhkit::{Aabb, Bvh, Intersect, OneByOne, Primitive, Ray};
 ///
 /// /// A disc in the plane z = height.
 /// struct Disc { center: [f32; 2], height: f32, radius: f32 }
@@ -69,7 +71,7 @@ pub trait Primitive: Sync {
 /// impl Intersect for Disc {
 ///     type Payload = f32; // the distance from the disc's center
 ///     type Leaf = OneByOne; // how discs lie in a leaf
-///     fn intersect(&self, ray: &PreparedRay) -> Option<(f32, f32)> {
+///     fn intersect(&self, ray: &Ray) -> Option<(f32, f32)> {
 ///         let t = (self.height - ray.origin[2]) / ray.direction[2];
 ///         let [x, y, _] = ray.at(t);
 ///         let distance = (x - self.center[0]).hypot(y - self.center[1]);
@@ -88,11 +90,14 @@ pub trait Intersect: Primitive {
     /// What a hit tells beside t: barycentrics, a normal, `()`.
     type Payload: Copy;
 
-    /// How primitives of this type lie in the leaves of the wide layouts: [`OneByOne`], unless there is a [`Leaf`] of
-    /// their own.
+    /// How primitives of this type lie in the leaves of the wide layouts, and how they are tested there:
+    /// [`OneByOne`](crate::OneByOne), or [`Sieved`](crate::Sieved) by a test in lanes.
     type Leaf: Leaf<Self::Scalar, Self::Payload>;
 
-    /// The ray's first hit with this primitive at a t in [`ray.t_min`, `ray.t_max`], and its payload.
+    /// Returns the ray's first hit with this primitive at a t in [`ray.t_min`, `ray.t_max`], and its payload.
+    ///
+    /// [`Bvh::closest_hit`](crate::Bvh::closest_hit) narrows the ray: its `t_max` is that of the closest hit found so far,
+    /// so that a primitive which is a hierarchy itself prunes by it.
     ///
     /// Expected to be a pure function: equal primitives and rays give equal answers. A t outside
     /// the interval, NaN or infinite is no hit. Where rounding puts t before the ray's entry into the
@@ -100,15 +105,16 @@ pub trait Intersect: Primitive {
     /// by this rule the tree's answer is the naive loop's, bit for bit. For the same reason a hit within
     /// a few roundings of the interval's end may be on either side of it: to find a hit again, leave
     /// `t_min` a little below its t.
-    fn intersect(&self, ray: &PreparedRay<Self::Scalar>) -> Option<(Self::Scalar, Self::Payload)>;
+    fn intersect(&self, ray: &Ray<Self::Scalar>) -> Option<(Self::Scalar, Self::Payload)>;
 
-    /// Writes the [`Leaf::OPERANDS`] scalars that lie in the leaf: none for [`OneByOne`].
+    /// Writes the scalars that lie in the leaf, [`Sieve::OPERANDS`](crate::Sieve::OPERANDS) for a [`Sieved`](crate::Sieved) one;
+    /// none for [`OneByOne`](crate::OneByOne).
     fn put_operands(&self, _operands: &mut [Self::Scalar]) {}
 }
 
 macro_rules! forward {
-    ($pointer:ty) => {
-        impl<P: Primitive + ?Sized> Primitive for $pointer {
+    ($pointer:ty $(where P: $($bound:path),*)?) => {
+        impl<P: Primitive + ?Sized $($(+ $bound)*)?> Primitive for $pointer {
             type Scalar = P::Scalar;
             #[inline(always)]
             fn aabb(&self) -> Aabb<P::Scalar> {
@@ -120,11 +126,11 @@ macro_rules! forward {
             }
         }
 
-        impl<P: Intersect + ?Sized> Intersect for $pointer {
+        impl<P: Intersect + ?Sized $($(+ $bound)*)?> Intersect for $pointer {
             type Payload = P::Payload;
             type Leaf = P::Leaf;
             #[inline(always)]
-            fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, P::Payload)> {
+            fn intersect(&self, ray: &Ray<P::Scalar>) -> Option<(P::Scalar, P::Payload)> {
                 (**self).intersect(ray)
             }
             #[inline(always)]
@@ -137,3 +143,5 @@ macro_rules! forward {
 
 forward!(&P);
 forward!(Box<P>);
+// A list of them is read on several threads.
+forward!(Arc<P> where P: Send);

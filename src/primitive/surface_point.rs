@@ -1,8 +1,7 @@
 //! A point on a surface, and rays that leave it without hitting it.
 
 use super::Barycentrics;
-use crate::geometry::{Ray, Scalar};
-use glam::DVec3;
+use crate::geometry::{Ray, Scalar, cross, dot, max};
 
 /// A point on a surface, from which rays can be started that do not hit the surface there: from
 /// [`Corners::surface_point`](crate::Corners::surface_point), [`Sphere::surface_point`](crate::Sphere::surface_point),
@@ -31,31 +30,33 @@ pub struct SurfacePoint<S = f32> {
 
 impl<S: Scalar> SurfacePoint<S> {
     pub(super) fn of_triangle(corners: [[S; 3]; 3], at: Barycentrics<S>) -> Self {
-        let wide = |point: [S; 3]| point.map(S::to_f64);
-        let [a, b, c] = corners.map(|corner| DVec3::from(wide(corner)));
-        let (edge1, edge2) = (b - a, c - a);
-        let position = a + edge1 * at.u.to_f64() + edge2 * at.v.to_f64();
-        let largest = edge1.abs().max(edge2.abs()).max((c - b).abs()).max_element();
+        let [a, b, c] = corners.map(widened);
+        let (edge1, edge2, edge3) = (difference(b, a), difference(c, a), difference(c, b));
+        let (u, v) = (at.u.to_f64(), at.v.to_f64());
+        let position = [0, 1, 2].map(|axis| a[axis] + edge1[axis] * u + edge2[axis] * v);
+        let largest = [edge1, edge2, edge3].as_flattened().iter().fold(0.0, |most, x| max(x.abs(), most));
         // Scaled, for squares must not leave the range.
-        let normal = (edge1 / largest).cross(edge2 / largest).normalize_or_zero();
+        let normal = unit(cross(edge1.map(|x| x / largest), edge2.map(|x| x / largest)));
         // What decides on which side a ray starts is computed in f64, whichever the scalar: 3,000,000 random
         // triangles and directions needed more than 2^14 epsilon.
         let test = f64::from(1 << 18) * f64::EPSILON * largest;
-        let narrow = |vector: DVec3| vector.to_array().map(S::from_f64);
-        let error = narrow(position).map(|x| S::EPSILON * x.abs() + S::from_f64(test));
-        Self { position: narrow(position), normal: narrow(normal), error }
+        let position = position.map(S::from_f64);
+        let error = position.map(|x| S::EPSILON * x.abs() + S::from_f64(test));
+        Self { position, normal: normal.map(S::from_f64), error }
     }
 
     /// Of a sphere, next to `position`.
     pub(super) fn of_sphere(center: [S; 3], radius: S, position: [S; 3]) -> Self {
-        let [center, position] = [center, position].map(|point| DVec3::from(point.map(S::to_f64)));
-        let radius = radius.to_f64();
-        let normal = (position - center).normalize_or_zero();
-        let narrow = |vector: DVec3| vector.to_array().map(S::from_f64);
-        let position = narrow(center + normal * radius);
+        let (center, radius) = (widened(center), radius.to_f64());
+        let normal = unit(difference(widened(position), center));
+        let position = [0, 1, 2].map(|axis| S::from_f64(center[axis] + normal[axis] * radius));
         // The ray test subtracts the square of the radius from that of the distance.
         let test = S::from_f64(8.0 * radius) * S::EPSILON;
-        Self { position, normal: narrow(normal), error: position.map(|x| S::EPSILON * x.abs() + test) }
+        Self {
+            position,
+            normal: normal.map(S::from_f64),
+            error: position.map(|x| S::EPSILON * x.abs() + test),
+        }
     }
 
     /// The ray in `direction` from as close to the surface, on the side that `direction` points to, as
@@ -92,4 +93,18 @@ impl<S: Scalar> SurfacePoint<S> {
         });
         Ray::new(origin, direction)
     }
+}
+
+fn widened<S: Scalar>(point: [S; 3]) -> [f64; 3] {
+    point.map(S::to_f64)
+}
+
+fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// The vector of length 1 in the same direction; zero if there is none.
+fn unit(vector: [f64; 3]) -> [f64; 3] {
+    let inverse = 1.0 / Scalar::sqrt(dot(vector, vector));
+    if inverse.is_finite() && inverse > 0.0 { vector.map(|x| x * inverse) } else { [0.0; 3] }
 }

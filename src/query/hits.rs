@@ -1,12 +1,14 @@
 //! All hits along a ray, in order, found as they are asked for.
 
-use super::ahead::Ahead;
-use super::counters::Recorder;
-use super::{HitOf, Traverse};
-use crate::geometry::{PreparedRay, Ray};
-use crate::primitive::Intersect;
-use crate::simd::{Backend, Kernel};
-use fearless_simd::Simd;
+use super::each::each;
+use super::{Hit, HitOf, Traverse};
+use crate::geometry::{Ray, Slabs};
+use crate::leaf::sealed::LeafKind;
+use crate::primitive::{Intersect, accept};
+use crate::simd::Backend;
+use crate::traverse::{Ask, AskedLeaf, AskedRay, BestFirst, Details, QueuedHit, Recorder};
+use alloc::vec::Vec;
+use core::ops::ControlFlow;
 
 /// An iterator over the hits of a ray by increasing (t, index).
 ///
@@ -21,11 +23,11 @@ use fearless_simd::Simd;
 pub struct Hits<'a, P: Intersect, L: Traverse<P>, R = ()> {
     layout: &'a L,
     backend: Backend,
-    primitives: &'a [P],
-    ray: PreparedRay<P::Scalar>,
-    ahead: Ahead<P, L::Place>,
+    ray: Ray<P::Scalar>,
+    ahead: BestFirst<P::Scalar, L::Place>,
+    ask: AskAll<'a, P>,
     /// The last answer: a primitive that is in several leaves is met again, but is an answer once.
-    last: Option<(P::Scalar, usize)>,
+    last: Option<(P::Scalar, u32)>,
     recorder: R,
 }
 
@@ -37,15 +39,14 @@ impl<'a, P: Intersect, L: Traverse<P>, R: Recorder> Hits<'a, P, L, R> {
         ray: &Ray<P::Scalar>,
         mut recorder: R,
     ) -> Self {
-        let ray = ray.prepare();
         let mut root = None;
         if ray.is_valid() {
             recorder.ray();
-            let entry = ray.slabs.entry(&layout.aabb()).filter(|&entry| entry <= ray.t_max);
+            let entry = Slabs::new(ray).entry(&layout.aabb()).filter(|&entry| entry <= ray.t_max);
             root = layout.root().zip(entry);
         }
-        let ahead = Ahead::new(root);
-        Self { layout, backend, primitives, ray, ahead, last: None, recorder }
+        let (ahead, ask) = (BestFirst::new(root), AskAll { primitives, payloads: Vec::new() });
+        Self { layout, backend, ray: *ray, ahead, ask, last: None, recorder }
     }
 }
 
@@ -56,13 +57,22 @@ impl<P: Intersect, L: Traverse<P>, R: Recorder> Iterator for Hits<'_, P, L, R> {
     fn next(&mut self) -> Option<HitOf<P>> {
         loop {
             if !self.ahead.is_settled() {
-                let Self { layout, primitives, ray, ahead, recorder, .. } = self;
-                self.backend.run(Open { layout: *layout, primitives, ray, ahead, recorder });
+                let Self { layout, ray, ahead, ask, recorder, .. } = self;
+                let steps = layout.open_ahead(self.backend, ray, ahead, ask);
+                if recorder.records() {
+                    steps.tell(recorder);
+                }
             }
-            let hit = self.ahead.next_hit()?;
-            if self.last.is_none_or(|last| last < (hit.t, hit.index)) {
-                self.last = Some((hit.t, hit.index));
-                return Some(hit);
+            let (t, index, details) = self.ahead.next_hit()?;
+            if self.last.is_none_or(|last| last < (t, index)) {
+                self.last = Some((t, index));
+                let payload = match details {
+                    Details::OfLane(details) => {
+                        <P::Leaf as LeafKind<P::Scalar, P::Payload>>::payload(details)?
+                    }
+                    Details::Kept(number) => self.ask.payloads[number as usize],
+                };
+                return Some(Hit { t, index: index as usize, payload });
             }
         }
     }
@@ -70,22 +80,21 @@ impl<P: Intersect, L: Traverse<P>, R: Recorder> Iterator for Hits<'_, P, L, R> {
 
 impl<P: Intersect, L: Traverse<P>, R: Recorder> core::iter::FusedIterator for Hits<'_, P, L, R> {}
 
-/// Boxes are opened until the next hit is known.
-struct Open<'q, P: Intersect, L: Traverse<P>, R> {
-    layout: &'q L,
-    primitives: &'q [P],
-    ray: &'q PreparedRay<P::Scalar>,
-    ahead: &'q mut Ahead<P, L::Place>,
-    recorder: &'q mut R,
+/// Keeps the payloads of all hits that were found.
+#[doc(hidden)]
+pub struct AskAll<'a, P: Intersect> {
+    pub(super) primitives: &'a [P],
+    payloads: Vec<P::Payload>,
 }
 
-impl<P: Intersect, L: Traverse<P>, R: Recorder> Kernel for Open<'_, P, L, R> {
-    const IS_WIDE: bool = L::IS_WIDE;
-    type Output = ();
-
-    #[inline(always)]
-    fn run<I: Simd>(self, isa: I) {
-        let Self { layout, primitives, ray, ahead, recorder } = self;
-        layout.open_ahead(isa, ray, primitives, ahead, recorder);
+impl<P: Intersect> Ask<P::Scalar> for AskAll<'_, P> {
+    fn ask(&mut self, leaf: AskedLeaf<'_, P::Scalar>, ray: &mut AskedRay<P::Scalar>) -> ControlFlow<()> {
+        each(self.primitives, leaf, ray, |primitive, index, ray| {
+            if let Some((t, payload)) = accept(primitive, &ray.ray, &ray.slabs) {
+                ray.hits.push(QueuedHit::new(t, index, Details::Kept(self.payloads.len() as u32)));
+                self.payloads.push(payload);
+            }
+            ControlFlow::Continue(())
+        })
     }
 }

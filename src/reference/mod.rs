@@ -24,9 +24,10 @@
 pub mod exact;
 
 use crate::build::PrimRef;
-use crate::geometry::Ray;
-use crate::primitive::Intersect;
-use crate::query::{Hit, HitOf, Recorder, accept, precedes};
+use crate::geometry::{Ray, Slabs};
+use crate::primitive::{Intersect, accept, precedes};
+use crate::query::{Hit, HitOf};
+use crate::traverse::Recorder;
 use alloc::vec::Vec;
 
 /// The hit with the smallest t in the ray's interval; of equal ones, that with the lowest index.
@@ -77,7 +78,7 @@ fn all<'a, P: Intersect>(
     ray: &Ray<P::Scalar>,
     recorder: &'a mut impl Recorder,
 ) -> impl Iterator<Item = HitOf<P>> {
-    let prepared = ray.prepare();
+    let (ray, slabs) = (*ray, Slabs::new(ray));
     let valid = ray.is_valid();
     if valid {
         recorder.ray();
@@ -85,7 +86,7 @@ fn all<'a, P: Intersect>(
     let asked = if valid { primitives } else { &[] };
     asked.iter().enumerate().filter_map(move |(index, primitive)| {
         recorder.primitive();
-        let (t, payload) = accept(primitive, &prepared, prepared.t_max)?;
+        let (t, payload) = accept(primitive, &ray, &slabs)?;
         PrimRef::new(primitive.aabb(), 0).flaw().is_none().then_some(Hit { t, index, payload })
     })
 }

@@ -1,24 +1,57 @@
 //! Several scalars side by side, and the instruction sets that compute with them.
 //!
-//! Kernels are generic inline functions over [`Lanes`], compiled once for each instruction set below one
-//! `#[target_feature]` function (see [`InstructionSet`]). Arithmetic is the plain IEEE 754 one on all of
-//! them, nothing fused but in [`Lanes`]' `mul_add`, which no answer is made of: equal operands give equal bits
-//! whatever the machine.
+//! Kernels are generic inline functions over [`Lanes`], compiled once for each instruction set
+//! below one `#[target_feature]` function (see [`InstructionSet`]). Arithmetic is the plain IEEE
+//! 754 one on all of them, nothing fused but in `mul_add`, which no answer is made of: equal
+//! operands give equal bits whatever the machine.
+//!
+//! An instruction set is a token and its vectors ([`Isa`]), each of which is a list of operations.
 
-#[cfg(target_arch = "x86_64")]
-mod avx512;
 mod backend;
+mod isa;
 mod lanes;
+mod pair;
 mod pairs;
 mod prefetch;
-mod read;
-mod twice;
+#[cfg(test)]
+mod tests;
+mod vector;
+
+#[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+mod neon;
+#[cfg(any(
+    feature = "portable",
+    not(any(
+        all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"),
+        all(target_arch = "aarch64", target_feature = "neon"),
+        all(target_arch = "wasm32", target_feature = "simd128"),
+    ))
+))]
+mod portable;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod simd128;
+#[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+mod x86;
+
+/// What every processor of the target has.
+#[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+use neon::Neon as Baseline;
+#[cfg(not(any(
+    all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"),
+    all(target_arch = "aarch64", target_feature = "neon"),
+    all(target_arch = "wasm32", target_feature = "simd128"),
+)))]
+use portable::Portable as Baseline;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+use simd128::Simd128 as Baseline;
+#[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+use x86::Sse2 as Baseline;
 
 pub use backend::InstructionSet;
-pub(crate) use backend::{Backend, Kernel};
-pub(crate) use lanes::{Count, Pair, Width, Window};
-pub use lanes::{Halves, Lanes};
-pub use pairs::Lanes4;
+pub use backend::{Backend, Kernel};
+pub use isa::Isa;
+pub(crate) use lanes::{Count, Width, Window};
+pub use lanes::{Halves, KernelLanes, Lanes};
+pub(crate) use pair::Pair;
+pub use pairs::{F32Lanes4, Lanes4};
 pub(crate) use prefetch::{prefetch, prefetch_ahead};
-pub(crate) use read::{Kept, read_each};
-pub(crate) use twice::Twice;

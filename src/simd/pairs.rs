@@ -1,6 +1,6 @@
 //! Four scalars side by side, for the slab test of two boxes at once.
 //!
-//! glam's vector for f32, an array for f64. Both round alike and leave a NaN out of the maximum
+//! A vector for f32 where there is one, else an array. Both round alike and leave a NaN out of the maximum
 //! alike, so results are the same bits everywhere.
 
 /// Four lanes of `S`.
@@ -36,15 +36,16 @@ macro_rules! portable {
             }
             #[inline(always)]
             fn sub(self, other: Self) -> Self {
-                core::array::from_fn(|lane| self[lane] - other[lane])
+                [self[0] - other[0], self[1] - other[1], self[2] - other[2], self[3] - other[3]]
             }
             #[inline(always)]
             fn mul(self, other: Self) -> Self {
-                core::array::from_fn(|lane| self[lane] * other[lane])
+                [self[0] * other[0], self[1] * other[1], self[2] * other[2], self[3] * other[3]]
             }
             #[inline(always)]
             fn max(self, other: Self) -> Self {
-                core::array::from_fn(|lane| crate::geometry::max(self[lane], other[lane]))
+                let of = |lane: usize| crate::geometry::max(self[lane], other[lane]);
+                [of(0), of(1), of(2), of(3)]
             }
             #[inline(always)]
             fn to_pairs_negating_second(self) -> [[$scalar; 2]; 2] {
@@ -55,56 +56,72 @@ macro_rules! portable {
 }
 
 portable!(f64);
-#[cfg(test)]
+#[cfg(any(test, not(target_arch = "x86_64")))]
 portable!(f32);
 
-impl Lanes4<f32> for glam::Vec4 {
-    #[inline(always)]
-    fn of_pairs(first: &[f32; 2], second: &[f32; 2]) -> Self {
-        #[cfg(target_arch = "x86_64")]
-        {
-            use core::arch::x86_64::{_mm_castpd_ps, _mm_set_pd};
+/// The lanes of `f32`: a vector where every processor of the target has one.
+#[cfg(target_arch = "x86_64")]
+pub type F32Lanes4 = sse2::Lanes;
+#[cfg(not(target_arch = "x86_64"))]
+pub type F32Lanes4 = [f32; 4];
+
+#[cfg(target_arch = "x86_64")]
+mod sse2 {
+    use super::Lanes4;
+    use core::arch::x86_64::*;
+
+    #[derive(Clone, Copy)]
+    pub struct Lanes(__m128);
+
+    impl Lanes4<f32> for Lanes {
+        #[inline(always)]
+        fn of_pairs(first: &[f32; 2], second: &[f32; 2]) -> Self {
             // Two loads of eight bytes instead of the five that compilers make of four scalars.
-            // SAFETY: SSE2 is part of every x86-64; each reference is good for eight bytes, which are
-            // read without asking for alignment, and any bits are an f64.
+            // SAFETY: SSE2 is part of every x86-64; each reference is good for eight bytes, which are read without asking for alignment, and any
+            // bits are an f64.
             unsafe {
                 let pair = |pair: &[f32; 2]| pair.as_ptr().cast::<f64>().read_unaligned();
-                _mm_castpd_ps(_mm_set_pd(pair(second), pair(first))).into()
+                Self(_mm_castpd_ps(_mm_set_pd(pair(second), pair(first))))
             }
         }
-        #[cfg(not(target_arch = "x86_64"))]
-        Self::new(first[0], first[1], second[0], second[1])
-    }
-    #[inline(always)]
-    fn of_halves(first: f32, second: f32) -> Self {
-        Self::new(first, first, second, second)
-    }
-    #[inline(always)]
-    fn splat(value: f32) -> Self {
-        Self::splat(value)
-    }
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self - other
-    }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self * other
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // glam leaves open what its maximum makes of a NaN; on x86-64 it is the instruction that
-        // does what is wanted here, elsewhere a comparison has to say it.
-        if cfg!(target_arch = "x86_64") {
-            Self::max(self, other)
-        } else {
-            Self::select(self.cmpgt(other), self, other)
+        #[inline(always)]
+        fn of_halves(first: f32, second: f32) -> Self {
+            // SAFETY: SSE2 is part of every x86-64.
+            Self(unsafe { _mm_setr_ps(first, first, second, second) })
         }
-    }
-    #[inline(always)]
-    fn to_pairs_negating_second(self) -> [[f32; 2]; 2] {
-        let turned = -self;
-        [[self.x, self.y], [turned.z, turned.w]]
+        #[inline(always)]
+        fn splat(value: f32) -> Self {
+            // SAFETY: SSE2 is part of every x86-64.
+            Self(unsafe { _mm_set1_ps(value) })
+        }
+        #[inline(always)]
+        fn sub(self, other: Self) -> Self {
+            // SAFETY: SSE2 is part of every x86-64.
+            Self(unsafe { _mm_sub_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn mul(self, other: Self) -> Self {
+            // SAFETY: SSE2 is part of every x86-64.
+            Self(unsafe { _mm_mul_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            // SAFETY: SSE2 is part of every x86-64.
+            Self(unsafe { _mm_max_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        fn to_pairs_negating_second(self) -> [[f32; 2]; 2] {
+            let mut lanes = [[0.0; 2]; 2];
+            // SAFETY: SSE2 is part of every x86-64; two pairs of scalars, written a pair at a time without asking for
+            // alignment.
+            unsafe {
+                let negated = _mm_xor_ps(self.0, _mm_set1_ps(-0.0));
+                lanes[0].as_mut_ptr().cast::<f64>().write_unaligned(_mm_cvtsd_f64(_mm_castps_pd(self.0)));
+                let high = _mm_castps_pd(_mm_movehl_ps(negated, negated));
+                lanes[1].as_mut_ptr().cast::<f64>().write_unaligned(_mm_cvtsd_f64(high));
+            }
+            lanes
+        }
     }
 }
 
@@ -127,7 +144,7 @@ mod tests {
                     // The payload of a NaN is nobody's promise.
                     lanes.map(|pair| pair.map(|x| if x.is_nan() { u32::MAX } else { x.to_bits() }))
                 };
-                assert_eq!(bits(run::<glam::Vec4>(first, second)), bits(run::<[f32; 4]>(first, second)));
+                assert_eq!(bits(run::<F32Lanes4>(first, second)), bits(run::<[f32; 4]>(first, second)));
             }
         }
     }

@@ -1,10 +1,9 @@
 //! End-point overlap: the cost of boxes around surface that is not below them.
 
-use crate::geometry::{Aabb, Polygon, Scalar};
+use crate::geometry::{Aabb, Polygon, Scalar, ScalarParts};
 use crate::layout::{Outline, Part};
 use crate::parallel;
 use alloc::vec::Vec;
-use glam::DVec3;
 
 /// Triangles in a task. Their sums are added in order, so that the result does not depend on the number of threads.
 const CHUNK: usize = 256;
@@ -44,7 +43,7 @@ pub(crate) fn epo<S: Scalar, H: Outline<S>>(
         let mut parts = alloc::vec![Polygon::EMPTY; levels];
         let (mut cost, mut area) = (0.0, 0.0);
         for places in triangles {
-            parts[0].set(&corners(places[0].index as usize).map(|corner| DVec3::from(scaled(corner))));
+            parts[0].set(&corners(places[0].index as usize).map(&scaled));
             let own = parts[0].area();
             // Not if it is NaN.
             if own > 0.0 {

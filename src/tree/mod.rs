@@ -138,7 +138,7 @@ impl<S: Scalar> Tree<S> {
     /// # Ok::<(), bvhkit::BuildError>(())
     /// ```
     pub fn optimise(&mut self, optimise: &Optimise) -> Gain {
-        optimise.run(self, &mut Vec::new(), || true)
+        S::optimise(self, optimise)
     }
 
     /// Its shape and estimated cost.

@@ -1,6 +1,6 @@
 //! A primitive that shares no leaf with its like, so that unlike ones fit behind one pointer.
 
-use bvhkit::{Aabb, Intersect, OneByOne, PreparedRay, Primitive};
+use bvhkit::{Aabb, Intersect, OneByOne, Primitive, Ray};
 
 pub struct Alone<P>(pub P);
 
@@ -16,7 +16,7 @@ impl<P: Intersect> Intersect for Alone<P> {
     type Payload = P::Payload;
     type Leaf = OneByOne;
 
-    fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, P::Payload)> {
+    fn intersect(&self, ray: &Ray<P::Scalar>) -> Option<(P::Scalar, P::Payload)> {
         self.0.intersect(ray)
     }
 }

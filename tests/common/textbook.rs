@@ -1,7 +1,7 @@
 //! The ray test that everybody starts with, as a yardstick: rays that find no gap in it are no good at
 //! finding gaps.
 
-use bvhkit::{Aabb, Intersect, OneByOne, PreparedRay, Primitive, Triangle};
+use bvhkit::{Aabb, Intersect, OneByOne, Primitive, Ray, Triangle};
 use glam::Vec3;
 
 /// A triangle tested as Moller and Trumbore (Fast, Minimum Storage Ray/Triangle Intersection, 1997) do, but
@@ -21,7 +21,7 @@ impl Intersect for Textbook {
     type Payload = ();
     type Leaf = OneByOne;
 
-    fn intersect(&self, ray: &PreparedRay) -> Option<(f32, ())> {
+    fn intersect(&self, ray: &Ray) -> Option<(f32, ())> {
         let [a, b, c] = [self.0.a, self.0.b, self.0.c].map(Vec3::from);
         let [origin, direction] = [ray.origin, ray.direction].map(Vec3::from);
         let (edge1, edge2) = (b - a, c - a);

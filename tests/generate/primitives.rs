@@ -1,6 +1,6 @@
 //! One soup of corners, seen as every kind of primitive.
 
-use bvhkit::{Aabb, Intersect, OneByOne, PreparedRay, Primitive, Scalar, Sphere, Triangle};
+use bvhkit::{Aabb, Intersect, OneByOne, Primitive, Ray, Scalar, Sphere, Triangle};
 
 /// Three points; what a primitive makes of them is its own affair.
 pub type Corners<S> = [[S; 3]; 3];
@@ -44,7 +44,7 @@ impl<S: Scalar> Intersect for Disc<S> {
     type Payload = [S; 3];
     type Leaf = OneByOne;
 
-    fn intersect(&self, ray: &PreparedRay<S>) -> Option<(S, [S; 3])> {
+    fn intersect(&self, ray: &Ray<S>) -> Option<(S, [S; 3])> {
         let t = (self.center[2] - ray.origin[2]) / ray.direction[2];
         let point = ray.at(t);
         let [x, y] = [0, 1].map(|axis| point[axis] - self.center[axis]);

@@ -4,7 +4,7 @@ use crate::common::alone::Alone;
 use bvhkit::heuristic::{BinnedSah, Heuristic, Median, SweepSah};
 use bvhkit::{
     Aabb, Barycentrics, BuildError, Builder, Bvh, Counters, Hits, InstructionSet, Intersect, OneByOne,
-    PreparedRay, Primitive, Quality, Ray, Recorder, Sphere, Traverse, Tree, Triangle, TriangleMesh, WideTree,
+    Primitive, Quality, Ray, Recorder, Sphere, Traverse, Tree, Triangle, TriangleMesh, WideTree,
 };
 use glam::{DVec3, Vec3};
 
@@ -113,7 +113,7 @@ impl Primitive for Named {
 impl Intersect for Named {
     type Payload = ();
     type Leaf = OneByOne;
-    fn intersect(&self, _: &PreparedRay) -> Option<(f32, ())> {
+    fn intersect(&self, _: &Ray) -> Option<(f32, ())> {
         None
     }
 }

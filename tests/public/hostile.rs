@@ -5,8 +5,8 @@ use crate::common::in_every_mode::in_every_mode;
 use crate::common::modes::Mode;
 use bvhkit::heuristic::{BinnedSah, BuildNode, Heuristic, Median, Midpoint, Split, SweepSah};
 use bvhkit::{
-    Aabb, Axis, BuildError, Bvh, Intersect, MAX_DEPTH, OneByOne, PreparedRay, Primitive, Quality, Ray,
-    Scalar, Sphere, Traverse, Tree, Triangle, reference,
+    Aabb, Axis, BuildError, Bvh, Intersect, MAX_DEPTH, OneByOne, Primitive, Quality, Ray, Scalar, Sphere,
+    Traverse, Tree, Triangle, reference,
 };
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -42,7 +42,7 @@ impl Primitive for Asked<'_> {
 impl Intersect for Asked<'_> {
     type Payload = ();
     type Leaf = OneByOne;
-    fn intersect(&self, ray: &PreparedRay) -> Option<(f32, ())> {
+    fn intersect(&self, ray: &Ray) -> Option<(f32, ())> {
         self.0.intersect(ray)
     }
 }
@@ -206,7 +206,7 @@ impl Primitive for Nothing {
 impl Intersect for Nothing {
     type Payload = ();
     type Leaf = OneByOne;
-    fn intersect(&self, _: &PreparedRay) -> Option<(f32, ())> {
+    fn intersect(&self, _: &Ray) -> Option<(f32, ())> {
         None
     }
 }
@@ -259,7 +259,7 @@ fn an_intersection_that_answers_nonsense_is_no_hit() {
     impl Intersect for Liar {
         type Payload = ();
         type Leaf = OneByOne;
-        fn intersect(&self, _: &PreparedRay) -> Option<(f32, ())> {
+        fn intersect(&self, _: &Ray) -> Option<(f32, ())> {
             Some((self.0, ()))
         }
     }

@@ -84,12 +84,9 @@ fn hits_itself<S: Scalar>(seed: u64, intersects: impl Fn(Triangle<S>, &Ray<S>) -
 
 #[test]
 fn a_triangle_is_not_hit_by_rays_that_leave_it() {
-    assert_eq!(hits_itself::<f32>(1, |triangle, ray| triangle.intersect(&ray.prepare()).is_some()), 0);
-    assert_eq!(
-        hits_itself::<f32>(2, |triangle, ray| Precise(triangle).intersect(&ray.prepare()).is_some()),
-        0
-    );
-    assert_eq!(hits_itself::<f64>(3, |triangle, ray| triangle.intersect(&ray.prepare()).is_some()), 0);
+    assert_eq!(hits_itself::<f32>(1, |triangle, ray| triangle.intersect(ray).is_some()), 0);
+    assert_eq!(hits_itself::<f32>(2, |triangle, ray| Precise(triangle).intersect(ray).is_some()), 0);
+    assert_eq!(hits_itself::<f64>(3, |triangle, ray| triangle.intersect(ray).is_some()), 0);
 }
 
 /// The test has power: without the offset, rays do hit what they start from.
@@ -99,7 +96,7 @@ fn rays_from_the_rounded_point_itself_do_hit() {
         let mut point = triangle.surface_point(Barycentrics { u: 0.3, v: 0.3 });
         point.error = [0.0; 3];
         point.normal = [0.0; 3];
-        triangle.intersect(&point.spawn(ray.direction).prepare()).is_some()
+        triangle.intersect(&point.spawn(ray.direction)).is_some()
     };
     assert!(hits_itself::<f32>(1, on_the_spot) > 10_000);
 }
@@ -130,12 +127,12 @@ fn a_sphere_is_not_hit_by_rays_that_leave_it() {
             let center = cases.point(distance);
             let sphere = Sphere::new(center.map(S::from_f64), S::from_f64(size));
             let ray = Ray::new(cases.point(distance).map(S::from_f64), cases.point(1.0).map(S::from_f64));
-            let Some((t, ())) = sphere.intersect(&ray.prepare()) else { continue };
+            let Some((t, ())) = sphere.intersect(&ray) else { continue };
             hits += 1;
             let point = sphere.surface_point(ray.at(t));
             let direction = cases.direction(&point);
             let outward = dot(direction.map(S::to_f64), point.normal.map(S::to_f64)) > 0.0;
-            let again = sphere.intersect(&point.spawn(direction).prepare());
+            let again = sphere.intersect(&point.spawn(direction));
             // A ray into the sphere hits the other side, no nearer than its angle says.
             let chord = -2.0 * size * dot(direction.map(S::to_f64), point.normal.map(S::to_f64));
             assert!(

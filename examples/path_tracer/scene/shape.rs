@@ -1,8 +1,7 @@
 //! The primitive of the path tracer: a triangle or an analytic sphere, side by side in one tree.
 
 use bvhkit::{
-    Aabb, Barycentrics, Corners, Intersect, OneByOne, PreparedRay, Primitive, Ray, Sphere, SurfacePoint,
-    Triangle,
+    Aabb, Barycentrics, Corners, Intersect, OneByOne, Primitive, Ray, Sphere, SurfacePoint, Triangle,
 };
 use glam::Vec3;
 
@@ -30,7 +29,7 @@ impl Intersect for Shape {
     /// Triangles and spheres have no operands in common.
     type Leaf = OneByOne;
 
-    fn intersect(&self, ray: &PreparedRay) -> Option<(f32, Self::Payload)> {
+    fn intersect(&self, ray: &Ray) -> Option<(f32, Self::Payload)> {
         match self {
             Self::Triangle(triangle) => {
                 let (t, barycentrics) = triangle.intersect(ray)?;

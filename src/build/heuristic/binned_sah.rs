@@ -2,7 +2,7 @@
 
 use super::bins::{Bins, Plane};
 use super::{BuildNode, Heuristic, Own, Proposal, SahCost, Split};
-use crate::geometry::{Aabb, Scalar};
+use crate::geometry::Scalar;
 use crate::simd::Backend;
 
 /// The cheapest of `bins - 1` equally spaced planes on each axis, by the surface area heuristic
@@ -53,6 +53,12 @@ impl<S: Scalar> Heuristic<S> for BinnedSah {
     }
 
     fn proposal(&self, node: &BuildNode<'_, S>, _: Own) -> Proposal<S> {
+        S::binned(self, node)
+    }
+}
+
+impl BinnedSah {
+    pub(in crate::build) fn propose<S: Scalar>(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
         if SahCost::is_block(node) {
             return Split::Leaf.into();
         }
@@ -60,9 +66,7 @@ impl<S: Scalar> Heuristic<S> for BinnedSah {
             self.cost.split_or_leaf(node, best.proposal, best.weighted_area.to_f64())
         })
     }
-}
 
-impl BinnedSah {
     /// The cheapest plane; none if all centroids are one point.
     pub(super) fn plane<S: Scalar>(&self, node: &BuildNode<'_, S>) -> Option<Plane<S>> {
         // Bins are cleared and swept for every node: no more of them than pay. Half of them for few references cost
@@ -78,9 +82,17 @@ impl BinnedSah {
 
     fn plane_of<S: Scalar, const N: usize>(node: &BuildNode<'_, S>, count: usize) -> Option<Plane<S>> {
         let (references, area_scale) = (node.references, node.aabb.area_scale());
-        let plane =
-            |span: &Aabb<S>| Backend::best().run(Bins::<S, N> { references, span, count, area_scale });
-        plane(&node.aabb).or_else(|| plane(&node.centroids()))
+        // One call, wherever the bins are.
+        let mut span = node.aabb;
+        for is_last in [false, true] {
+            let bins = Bins::<S, N> { references, span: &span, count, area_scale };
+            let plane = Backend::best().run(bins);
+            if is_last || plane.is_some() {
+                return plane;
+            }
+            span = node.centroids();
+        }
+        None
     }
 }
 
@@ -88,7 +100,7 @@ impl BinnedSah {
 mod tests {
     use super::*;
     use crate::build::reference::{PrimRef, bounds};
-    use crate::geometry::Axis;
+    use crate::geometry::{Aabb, Axis};
     use alloc::vec::Vec;
 
     fn split_of(references: &[PrimRef], heuristic: BinnedSah, max_leaf_size: usize) -> Split {

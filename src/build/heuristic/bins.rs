@@ -6,7 +6,7 @@ use super::proposal::{Proposal, Sides};
 use crate::build::reference::{PrimRef, three};
 use crate::geometry::{Aabb, Axis, Scalar};
 use crate::simd::{Halves, Kernel, Lanes, prefetch_ahead};
-use fearless_simd::Simd;
+use crate::simd::{Isa, KernelLanes};
 
 /// The search for the cheapest plane between `N` bins on each axis, of which `count` are in use.
 #[derive(Clone, Copy)]
@@ -31,18 +31,20 @@ pub(super) struct Plane<S> {
 const LANES: usize = 8;
 
 /// Boxes and numbers of references, by axis and bin. A box is one vector, its minimum negated: so one maximum joins two.
-struct Filled<S: Scalar, I: Simd, const N: usize> {
+struct Filled<S: Scalar, I: Isa, const N: usize> {
     boxes: [[S::Times8<I>; N]; 3],
     counts: [[i32; N]; 3],
 }
 
 impl<S: Scalar, const N: usize> Kernel for Bins<'_, S, N> {
-    const IS_WIDE: bool = true;
+    /// More bins are rarely asked for.
+    const IS_WIDE: bool = N <= 16;
+    const USES_AVX512: bool = false;
     /// None if all centroids are in one bin.
     type Output = Option<Plane<S>>;
 
     #[inline(always)]
-    fn run<I: Simd>(self, isa: I) -> Option<Plane<S>> {
+    fn run<I: Isa>(self, isa: I) -> Option<Plane<S>> {
         const { assert!(N.is_multiple_of(LANES)) }
         let scale = self.span.per_unit(self.count);
         let filled = self.fill(isa, scale);
@@ -60,7 +62,7 @@ impl<S: Scalar, const N: usize> Kernel for Bins<'_, S, N> {
 
 impl<S: Scalar, const N: usize> Bins<'_, S, N> {
     #[inline(always)]
-    fn fill<I: Simd>(&self, isa: I, scale: [S; 3]) -> Filled<S, I, N> {
+    fn fill<I: Isa>(&self, isa: I, scale: [S; 3]) -> Filled<S, I, N> {
         let grid = Grid::new(isa, self.span.min, scale, self.count);
         let mut filled = Filled::empty(isa);
         // More bins would take more of the stack than a worker may have.
@@ -93,7 +95,7 @@ impl<S: Scalar, const N: usize> Bins<'_, S, N> {
 
     /// For each bin, the cost of a plane before it; NaN where a side is empty.
     #[inline(always)]
-    fn costs<I: Simd>(&self, isa: I, filled: &Filled<S, I, N>, axis: usize) -> [S; N] {
+    fn costs<I: Isa>(&self, isa: I, filled: &Filled<S, I, N>, axis: usize) -> [S; N] {
         let (boxes, counts) = (&filled.boxes[axis], &filled.counts[axis]);
         let nothing = (S::Times8::splat(isa, S::NEG_INFINITY), 0);
         let mut sides = [Side::<S, N>::EMPTY, Side::EMPTY];
@@ -119,7 +121,7 @@ impl<S: Scalar, const N: usize> Bins<'_, S, N> {
     }
 }
 
-impl<S: Scalar, I: Simd, const N: usize> Filled<S, I, N> {
+impl<S: Scalar, I: Isa, const N: usize> Filled<S, I, N> {
     #[inline(always)]
     fn empty(isa: I) -> Self {
         Self { boxes: [[S::Times8::splat(isa, S::NEG_INFINITY); N]; 3], counts: [[0; N]; 3] }
@@ -146,7 +148,7 @@ impl<S: Scalar, I: Simd, const N: usize> Filled<S, I, N> {
 
     #[inline(always)]
     fn count(&mut self, isa: I, grid: &Grid<S, I>, reference: &PrimRef<S>) {
-        let [min, max] = grid.corners(isa, reference);
+        let [min, max] = reference.corners::<I>(isa);
         let aabb = S::Times8::of_halves([S::Times4::splat(isa, S::ZERO) - min, max]);
         let [x, y, z] = grid.cells(min, max);
         self.add(0, x as usize % N, aabb, 1);
@@ -157,7 +159,7 @@ impl<S: Scalar, I: Simd, const N: usize> Filled<S, I, N> {
 
 /// A box whose minimum is negated.
 #[inline(always)]
-fn to_box<S: Scalar, I: Simd>(isa: I, aabb: S::Times8<I>) -> Aabb<S> {
+fn to_box<S: Scalar, I: Isa>(isa: I, aabb: S::Times8<I>) -> Aabb<S> {
     let [negated_min, max] = aabb.to_halves();
     Aabb { min: three(S::Times4::splat(isa, S::ZERO) - negated_min), max: three(max) }
 }
@@ -172,7 +174,7 @@ impl<S: Scalar, const N: usize> Side<S, N> {
     const EMPTY: Self = Self { extents: [[S::ZERO; N]; 3], counts: [S::ZERO; N] };
 
     #[inline(always)]
-    fn put<I: Simd>(&mut self, bin: usize, aabb: S::Times8<I>, count: i32) {
+    fn put<I: Isa>(&mut self, bin: usize, aabb: S::Times8<I>, count: i32) {
         let [negated_min, max] = aabb.to_halves();
         let [x, y, z] = three(max + negated_min);
         self.extents[0][bin] = x;
@@ -183,7 +185,7 @@ impl<S: Scalar, const N: usize> Side<S, N> {
 
     /// Of eight bins. Of nothing at all it is NaN, infinity times zero.
     #[inline(always)]
-    fn costs<I: Simd>(&self, isa: I, first: usize, scale: S::Times8<I>) -> S::Times8<I> {
+    fn costs<I: Isa>(&self, isa: I, first: usize, scale: S::Times8<I>) -> S::Times8<I> {
         let [x, y, z] = &self.extents;
         let x = eight(isa, x, first) * scale;
         let y = eight(isa, y, first) * scale;
@@ -194,15 +196,13 @@ impl<S: Scalar, const N: usize> Side<S, N> {
 
 /// A part of a row.
 #[inline(always)]
-fn eight<S: Scalar, I: Simd, const N: usize>(isa: I, row: &[S; N], first: usize) -> S::Times8<I> {
-    let row = &row[first..first + LANES];
-    // SAFETY: eight scalars.
-    unsafe { S::Times8::load(isa, row.as_ptr()) }
+fn eight<S: Scalar, I: Isa, const N: usize>(isa: I, row: &[S; N], first: usize) -> S::Times8<I> {
+    S::Times8::from_slice(isa, &row[first..first + LANES])
 }
 
 /// Where the least number is, the first of equals, and the number; none if there is none.
 #[inline(always)]
-fn least<S: Scalar, I: Simd, const N: usize>(isa: I, costs: &[[S; N]; 3]) -> Option<(usize, usize, S)> {
+fn least<S: Scalar, I: Isa, const N: usize>(isa: I, costs: &[[S; N]; 3]) -> Option<(usize, usize, S)> {
     let mut smallest = S::Times8::splat(isa, S::INFINITY);
     for row in costs {
         for first in (0..N).step_by(LANES) {

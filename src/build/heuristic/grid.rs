@@ -1,57 +1,76 @@
 //! Cells in a box, as many on each axis.
 
-use crate::build::reference::{PrimRef, three};
 use crate::geometry::Scalar;
 use crate::simd::Lanes;
-use fearless_simd::Simd;
+use crate::simd::{Isa, KernelLanes};
 
 /// Where cells lie, a lane for each axis.
 #[derive(Clone, Copy)]
-pub(super) struct Grid<S: Scalar, I: Simd> {
+pub(super) struct Grid<S: Scalar, I: Isa> {
     origin: S::Times4<I>,
     /// Cells per unit of length; 0 on an axis without extent.
     scale: S::Times4<I>,
     half: S::Times4<I>,
     zero: S::Times4<I>,
     last: S::Times4<I>,
-    /// The first three lanes.
-    used: <S::Times4<I> as Lanes<S>>::Mask,
 }
 
-impl<S: Scalar, I: Simd> Grid<S, I> {
+impl<S: Scalar, I: Isa> Grid<S, I> {
     /// `count` cells on each axis of a box, from 1 to 2^16, that begins at an origin; see `Aabb::per_unit`.
     #[inline(always)]
     pub fn new(isa: I, [x, y, z]: [S; 3], [a, b, c]: [S; 3], count: usize) -> Self {
-        let zero = S::Times4::splat(isa, S::ZERO);
-        let four = [[x, y, z, S::ZERO], [a, b, c, S::ZERO], [S::ONE, S::ONE, S::ONE, S::ZERO]];
-        // SAFETY: four scalars each.
-        let [origin, scale, used] = unsafe {
-            [
-                S::Times4::load(isa, four[0].as_ptr()),
-                S::Times4::load(isa, four[1].as_ptr()),
-                S::Times4::load(isa, four[2].as_ptr()),
-            ]
-        };
-        let last = S::Times4::splat(isa, S::from_count(count as i32 - 1));
-        Self { origin, scale, half: S::Times4::splat(isa, S::HALF), zero, last, used: zero.lt(used) }
-    }
-
-    /// The box's minimum, and its maximum with zero in the fourth lane: an index there is a subnormal number, with which
-    /// computing is slow.
-    #[inline(always)]
-    pub fn corners(&self, isa: I, reference: &PrimRef<S>) -> [S::Times4<I>; 2] {
-        let [min, max] = reference.corners::<I>(isa);
-        [min, max.where_else(self.used, self.zero)]
+        let four = [[x, y, z, S::ZERO], [a, b, c, S::ZERO]];
+        let [origin, scale] = four.map(|row| S::Times4::from_slice(isa, &row));
+        let splat = |value: S| S::Times4::splat(isa, value);
+        let last = splat(S::from_count(count as i32 - 1));
+        Self { origin, scale, half: splat(S::HALF), zero: splat(S::ZERO), last }
     }
 
     /// The cell of the middle of a box with these corners, on each axis.
     #[inline(always)]
     pub fn cells(&self, min: S::Times4<I>, max: S::Times4<I>) -> [i32; 3] {
-        // As `Aabb::center` rounds; and in this order a NaN, as in the fourth lane, becomes zero.
+        // As `Aabb::center` rounds; and in this order a NaN becomes zero.
         let middle = min * self.half + max * self.half;
-        let cells = ((middle - self.origin) * self.scale).max(self.zero).min(self.last);
-        let [x, y, z] = three(cells);
-        // SAFETY: from 0 to the last cell.
-        unsafe { [x.to_small_integer(), y.to_small_integer(), z.to_small_integer()] }
+        ((middle - self.origin) * self.scale).max(self.zero).min(self.last).to_integers()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::InstructionSet;
+    use crate::simd::{Backend, Kernel};
+
+    /// The cell of a point, among so many of a box of length 1 on each axis.
+    struct Cell<S>([S; 3], usize);
+
+    impl<S: Scalar> Kernel for Cell<S> {
+        const IS_WIDE: bool = true;
+        type Output = [i32; 3];
+
+        #[inline(always)]
+        fn run<I: Isa>(self, isa: I) -> [i32; 3] {
+            let Self([x, y, z], count) = self;
+            let grid = Grid::<S, I>::new(isa, [S::ZERO; 3], [S::from_count(count as i32); 3], count);
+            let point = S::Times4::from_slice(isa, &[x, y, z, S::ZERO]);
+            grid.cells(point, point)
+        }
+    }
+
+    /// Cells of points, with every instruction set.
+    fn check<S: Scalar>() {
+        for backend in InstructionSet::available().filter_map(Backend::of) {
+            let cells = |point: [f64; 3], count| backend.run(Cell(point.map(S::from_f64), count));
+            assert_eq!(cells([0.0, 0.124, 0.125], 8), [0, 0, 1], "{backend:?}");
+            assert_eq!(cells([0.874, 0.875, 1.0], 8), [6, 7, 7], "{backend:?}");
+            assert_eq!(cells([-1e30, f64::NAN, 1e30], 8), [0, 0, 7], "{backend:?}");
+            assert_eq!(cells([0.5, 0.99999, 0.25], 1 << 16), [1 << 15, 65535, 1 << 14], "{backend:?}");
+        }
+    }
+
+    #[test]
+    fn points_lie_in_the_cells_that_begin_at_them_or_before() {
+        check::<f32>();
+        check::<f64>();
     }
 }

@@ -45,8 +45,8 @@ use alloc::vec::Vec;
 /// is proposed for more than [`max_leaf_size`](BuildNode::max_leaf_size) primitives. So a bad
 /// heuristic makes a slow tree, never a broken one.
 ///
-/// Called from several threads at once. A type parameter of the builder, so it costs what it
-/// computes; `&dyn Heuristic<f32>` is one too, for a choice at run time.
+/// Called from several threads at once, and by reference: builders are compiled once, in this
+/// crate, whatever the heuristic. `&dyn Heuristic<f32>` is one too, for a choice at run time.
 ///
 /// ```
 /// use bvhkit::heuristic::{BuildNode, Heuristic, Split};

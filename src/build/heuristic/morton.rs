@@ -6,10 +6,10 @@ use crate::build::reference::PrimRef;
 use crate::build::subtree::TASK_SIZE;
 use crate::geometry::{Aabb, Scalar};
 use crate::parallel;
+use crate::simd::Isa;
 use crate::simd::{Backend, Kernel, prefetch_ahead};
 use alloc::vec;
 use alloc::vec::Vec;
-use fearless_simd::Simd;
 
 /// Sorts references once along Morton's curve, and splits where the highest bit changes (Lauterbach et al., Fast BVH
 /// Construction on GPUs, 2009: the linear hierarchy).
@@ -24,7 +24,7 @@ const BITS: u32 = 16;
 
 impl<S: Scalar> Heuristic<S> for Morton {
     fn codes(&self, references: &[PrimRef<S>], scene: &Aabb<S>) -> Option<Vec<u64>> {
-        Some(new_codes(references, scene))
+        Some(S::codes(references, scene))
     }
 
     /// Of a heuristic that asks this one but does not pass its codes on: equal halves.
@@ -42,8 +42,8 @@ pub(in crate::build) fn new_codes<S: Scalar>(references: &[PrimRef<S>], scene: &
 
 /// The same in memory for as many.
 pub(in crate::build) fn codes<S: Scalar>(references: &[PrimRef<S>], scene: &Aabb<S>, codes: &mut [u64]) {
-    let parts = references.chunks(TASK_SIZE).zip(codes.chunks_mut(TASK_SIZE));
-    parallel::map(parts.collect(), |(references, codes)| {
+    let mut parts: Vec<_> = references.chunks(TASK_SIZE).zip(codes.chunks_mut(TASK_SIZE)).collect();
+    parallel::each(&mut parts, |(references, codes)| {
         Backend::best().run(Codes { references, scene, codes });
     });
 }
@@ -55,15 +55,15 @@ struct Codes<'r, S> {
 }
 
 impl<S: Scalar> Kernel for Codes<'_, S> {
-    const IS_WIDE: bool = true;
+    const IS_WIDE: bool = false;
     type Output = ();
 
     #[inline(always)]
-    fn run<I: Simd>(self, isa: I) {
+    fn run<I: Isa>(self, isa: I) {
         let grid = Grid::<S, I>::new(isa, self.scene.min, self.scene.per_unit(1 << BITS), 1 << BITS);
         for (code, reference) in self.codes.iter_mut().zip(self.references) {
             prefetch_ahead(reference);
-            let [min, max] = grid.corners(isa, reference);
+            let [min, max] = reference.corners::<I>(isa);
             let [x, y, z] = grid.cells(min, max).map(|cell| spread(cell as u32));
             *code = x << 2 | y << 1 | z;
         }

@@ -45,6 +45,16 @@ impl<S: Scalar> Heuristic<S> for SpatialSah {
     }
 
     fn proposal(&self, node: &BuildNode<'_, S>, _: Own) -> Proposal<S> {
+        S::spatial(self, node)
+    }
+
+    fn spare(&self, primitives: usize) -> usize {
+        (primitives as f64 * self.growth.clamp(0.0, Self::MAX_GROWTH)) as usize
+    }
+}
+
+impl SpatialSah {
+    pub(in crate::build) fn propose<S: Scalar>(&self, node: &BuildNode<'_, S>) -> Proposal<S> {
         if SahCost::is_block(node) {
             return Split::Leaf.into();
         }
@@ -66,10 +76,6 @@ impl<S: Scalar> Heuristic<S> for SpatialSah {
             }
         }
         self.planes.cost.split_or_leaf(node, best, weighted_area.to_f64())
-    }
-
-    fn spare(&self, primitives: usize) -> usize {
-        (primitives as f64 * self.growth.clamp(0.0, Self::MAX_GROWTH)) as usize
     }
 }
 

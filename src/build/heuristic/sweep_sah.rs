@@ -29,6 +29,12 @@ impl SweepSah {
 
 impl<S: Scalar> Heuristic<S> for SweepSah {
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
+        S::sweep(self, node)
+    }
+}
+
+impl SweepSah {
+    pub(in crate::build) fn propose<S: Scalar>(&self, node: &BuildNode<'_, S>) -> Split<S> {
         let n = node.references.len();
         if n < 2 || SahCost::is_block(node) {
             return Split::Leaf;

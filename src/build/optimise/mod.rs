@@ -73,7 +73,7 @@ impl Optimise {
         &self,
         tree: &mut Tree<S>,
         memory: &mut Vec<Word>,
-        goes_on: impl Fn() -> bool + Sync,
+        goes_on: &(dyn Fn() -> bool + Sync),
     ) -> Gain {
         let Some(mut linked) = Linked::new(tree, memory) else { return Gain::default() };
         let before = linked.cost();
@@ -88,7 +88,7 @@ impl Optimise {
             if !may_gain || !goes_on() {
                 break;
             }
-            let (done, gain) = round(&mut linked, &mut candidates, &goes_on);
+            let (done, gain) = round(&mut linked, &mut candidates, goes_on);
             moves += done;
             last_gains[number % last_gains.len()] = gain;
         }
@@ -103,7 +103,7 @@ impl Optimise {
 fn round<S: Scalar>(
     linked: &mut Linked<'_, S>,
     candidates: &mut [Candidate],
-    goes_on: &(impl Fn() -> bool + Sync),
+    goes_on: &(dyn Fn() -> bool + Sync),
 ) -> (usize, f64) {
     let mut found: Vec<Move<S>> = parallel::map(candidates.chunks_mut(64).collect(), |chunk| {
         if !goes_on() {
@@ -221,7 +221,7 @@ mod tests {
         let mut tree = builder.build(spheres).unwrap().layout().clone();
         let asked = AtomicUsize::new(0);
         let goes_on = || asked.fetch_add(1, Relaxed) < 1_000_000;
-        let gain = Optimise { share: 1.0, rounds: usize::MAX }.run(&mut tree, &mut Vec::new(), goes_on);
+        let gain = Optimise { share: 1.0, rounds: usize::MAX }.run(&mut tree, &mut Vec::new(), &goes_on);
         assert!(gain.after <= gain.before, "{gain:?}");
         (gain, asked.into_inner())
     }

@@ -1,7 +1,8 @@
 //! The indexed triangle mesh, borrowed from its owner.
 
-use super::{Barycentrics, Corners, Triangle, Watertight, WatertightLeaf};
-use crate::geometry::{Aabb, PreparedRay, Scalar};
+use super::{Barycentrics, Corners, Triangle, Watertight};
+use crate::geometry::{Aabb, Ray, Scalar};
+use crate::leaf::WatertightLeaf;
 use crate::primitive::{Intersect, Primitive};
 use core::fmt;
 
@@ -167,7 +168,7 @@ impl<S: Scalar> Intersect for MeshTriangle<'_, S> {
     type Leaf = WatertightLeaf;
 
     #[inline(always)]
-    fn intersect(&self, ray: &PreparedRay<S>) -> Option<(S, Barycentrics<S>)> {
+    fn intersect(&self, ray: &Ray<S>) -> Option<(S, Barycentrics<S>)> {
         Watertight(self).intersect(ray)
     }
 

@@ -2,16 +2,16 @@
 
 mod mesh;
 mod modes;
-mod packed;
 mod sheared;
 mod watertight;
 
 pub use mesh::{MeshError, MeshTriangle, TriangleMesh};
 pub use modes::{Fast, Precise, Watertight};
-pub use packed::{FastLeaf, PreciseLeaf, TriangleLeaf, WatertightLeaf};
+pub(crate) use watertight::DOUBT;
 
 use super::{Intersect, Primitive, SurfacePoint};
-use crate::geometry::{Aabb, PreparedRay, Scalar};
+use crate::geometry::{Aabb, Ray, Scalar};
+use crate::leaf::WatertightLeaf;
 
 /// Something with three corners, flat in between: what the modes [`Fast`], [`Watertight`] and [`Precise`]
 /// make a primitive of.
@@ -130,7 +130,7 @@ impl<S: Scalar> Intersect for Triangle<S> {
     type Leaf = WatertightLeaf;
 
     #[inline(always)]
-    fn intersect(&self, ray: &PreparedRay<S>) -> Option<(S, Barycentrics<S>)> {
+    fn intersect(&self, ray: &Ray<S>) -> Option<(S, Barycentrics<S>)> {
         Watertight(self).intersect(ray)
     }
 

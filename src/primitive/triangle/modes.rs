@@ -2,8 +2,9 @@
 
 use super::sheared::sheared;
 use super::watertight::{bounds, exact_bounds, watertight, watertight_widest};
-use super::{Barycentrics, Corners, FastLeaf, PreciseLeaf, WatertightLeaf};
-use crate::geometry::{Aabb, PreparedRay, Scalar};
+use super::{Barycentrics, Corners};
+use crate::geometry::{Aabb, Ray, Scalar, ScalarParts, Shear};
+use crate::leaf::{FastLeaf, PreciseLeaf, WatertightLeaf};
 use crate::primitive::{Intersect, Primitive};
 
 /// A triangle tested with the least arithmetic.
@@ -105,8 +106,8 @@ impl<P: Corners> Intersect for Fast<P> {
     type Leaf = FastLeaf;
 
     #[inline(always)]
-    fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, Barycentrics<P::Scalar>)> {
-        sheared(self.0.corners(), &ray.shear).filter(|&(t, _)| ray.includes(t))
+    fn intersect(&self, ray: &Ray<P::Scalar>) -> Option<(P::Scalar, Barycentrics<P::Scalar>)> {
+        sheared(self.0.corners(), &Shear::of(ray)).filter(|&(t, _)| ray.includes(t))
     }
 
     #[inline(always)]
@@ -143,8 +144,8 @@ impl<P: Corners> Intersect for Watertight<P> {
     type Leaf = WatertightLeaf;
 
     #[inline(always)]
-    fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, Barycentrics<P::Scalar>)> {
-        watertight(self.0.corners(), ray, &ray.shear).filter(|&(t, _)| ray.includes(t))
+    fn intersect(&self, ray: &Ray<P::Scalar>) -> Option<(P::Scalar, Barycentrics<P::Scalar>)> {
+        watertight(self.0.corners(), ray).filter(|&(t, _)| ray.includes(t))
     }
 
     #[inline(always)]
@@ -181,9 +182,11 @@ impl<P: Corners<Scalar = f32>> Intersect for Precise<P> {
     type Leaf = PreciseLeaf;
 
     #[inline(always)]
-    fn intersect(&self, ray: &PreparedRay) -> Option<(f32, Barycentrics)> {
-        let corners = self.0.corners().map(|corner| corner.map(Scalar::widen));
-        let (t, Barycentrics { u, v }) = watertight_widest(corners, &ray.wide_shear)?;
+    fn intersect(&self, ray: &Ray) -> Option<(f32, Barycentrics)> {
+        let [a, b, c] = self.0.corners();
+        let widen = |[x, y, z]: [f32; 3]| [x.widen(), y.widen(), z.widen()];
+        let corners = [widen(a), widen(b), widen(c)];
+        let (t, Barycentrics { u, v }) = watertight_widest(corners, &Shear::widened(ray))?;
         let (t, u, v) = (t as f32, u as f32, v as f32);
         ray.includes(t).then_some((t, Barycentrics { u, v }))
     }
@@ -197,20 +200,20 @@ impl<P: Corners<Scalar = f32>> Intersect for Precise<P> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Ray, Triangle};
+    use crate::Triangle;
     use alloc::vec::Vec;
 
     const UNIT: Triangle = Triangle { a: [0.0, 0.0, 0.0], b: [1.0, 0.0, 0.0], c: [0.0, 1.0, 0.0] };
 
     /// The answers of the modes, `f64` data included, with all they hold in `f32`.
     fn answers(triangle: Triangle, ray: Ray) -> [Option<(f32, f32, f32)>; 4] {
-        let prepared = ray.prepare();
+        let prepared = ray;
         let flat = |(t, at): (f32, Barycentrics)| (t, at.u, at.v);
         let double = |point: [f32; 3]| point.map(f64::from);
         let wide = Triangle::new(double(triangle.a), double(triangle.b), double(triangle.c));
         let wide_ray = Ray::new(double(ray.origin), double(ray.direction))
             .with_interval(f64::from(ray.t_min), f64::from(ray.t_max));
-        let wide_hit = wide.intersect(&wide_ray.prepare());
+        let wide_hit = wide.intersect(&wide_ray);
         [
             Fast(triangle).intersect(&prepared).map(flat),
             Watertight(triangle).intersect(&prepared).map(flat),
@@ -297,7 +300,7 @@ mod tests {
         for (size, distance) in [(1e6f32, 1e30f32), (1e3, 1e33), (1e8, 1e25), (3e-9, 1e-28), (1e-8, 1e-25)] {
             let corner = |x: f32, y: f32| [x * size, y * size, distance];
             let triangle = Triangle::new(corner(-1.0, -1.0), corner(1.0, -1.0), corner(0.0, 1.0));
-            let ray = Ray::new([0.0, 0.1 * size, 0.0], [0.0, 0.0, 1.0]).prepare();
+            let ray = Ray::new([0.0, 0.1 * size, 0.0], [0.0, 0.0, 1.0]);
             let t = [Watertight(triangle).intersect(&ray), Precise(triangle).intersect(&ray)];
             assert!(t.iter().all(|hit| hit.is_some_and(|(t, _)| t == distance)), "{size} {distance}: {t:?}");
         }
@@ -335,7 +338,7 @@ mod tests {
             [1.634_375_342_070_289_8, 1.634_375_342_070_289_8, -1.0],
         ];
         let faces = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]].map(|face| face.map(|i| corners[i]));
-        let ray = Ray::new([0.0f64; 3], [0.0, 0.0, 1.0]).prepare();
+        let ray = Ray::new([0.0f64; 3], [0.0, 0.0, 1.0]);
         let hits: Vec<_> =
             faces.iter().filter_map(|&[a, b, c]| Triangle::new(a, b, c).intersect(&ray)).collect();
         assert!(!hits.is_empty());

@@ -1,7 +1,7 @@
 //! The ray test in the ray's frame, without a second look.
 
 use super::Barycentrics;
-use crate::geometry::{Scalar, Shear, Vector, max, min};
+use crate::geometry::{Scalar, Shear, cross, dot, max, min};
 
 /// t and the weights of the ray's hit with a triangle (Woop, Benthin and Wald, Watertight Ray/Triangle
 /// Intersection, JCGT 2013): in the ray's frame, where the ray is the third axis, its point lies in
@@ -21,8 +21,8 @@ pub(super) fn sheared<S: Scalar>(corners: [[S; 3]; 3], shear: &Shear<S>) -> Opti
 
 /// A triangle around the ray's point, as far as rounding tells, in the ray's frame.
 pub(super) struct Sight<S: Scalar> {
-    /// The corners, one in each lane.
-    pub corners: [S::Vec3; 3],
+    /// First, second and third coordinates of the three corners.
+    pub corners: [[S; 3]; 3],
     /// The corners' weights, times the area.
     pub weights: [S; 3],
     pub area: S,
@@ -35,13 +35,12 @@ impl<S: Scalar> Sight<S> {
     #[inline(always)]
     pub fn new(corners: [[S; 3]; 3], shear: &Shear<S>) -> Option<Self> {
         let [x, y, z] = shear.apply(corners);
-        let cross = x.cross(y);
-        let weights = cross.to_array();
+        let weights = cross(x, y);
         if is_outside(weights) {
             return None;
         }
         let [a, b, c] = weights;
-        Some(Self { corners: [x, y, z], weights, area: a + b + c, volume: cross.dot(z) })
+        Some(Self { corners: [x, y, z], weights, area: a + b + c, volume: dot(weights, z) })
     }
 
     /// t and the weights.

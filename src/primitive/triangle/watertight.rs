@@ -16,7 +16,7 @@
 
 use super::Barycentrics;
 use super::sheared::{Sight, is_outside};
-use crate::geometry::{Aabb, Ray, Scalar, Shear, Vector, max, min};
+use crate::geometry::{Aabb, Ray, Scalar, Shear, cross, dot, max, min};
 
 /// As [`sheared`], but what rounding leaves open is computed once more in the wide scalar: a difference that is
 /// zero, as Woop, Benthin and Wald do; an area out of the range; and t where its sign is in doubt, so that a
@@ -24,11 +24,8 @@ use crate::geometry::{Aabb, Ray, Scalar, Shear, Vector, max, min};
 ///
 /// There is none wider than `f64`: see [`watertight_widest`].
 #[inline(always)]
-pub(super) fn watertight<S: Scalar>(
-    corners: [[S; 3]; 3],
-    ray: &Ray<S>,
-    shear: &Shear<S>,
-) -> Option<(S, Barycentrics<S>)> {
+pub(super) fn watertight<S: Scalar>(corners: [[S; 3]; 3], ray: &Ray<S>) -> Option<(S, Barycentrics<S>)> {
+    let shear = &Shear::of(ray);
     if S::IS_WIDEST {
         return watertight_widest(corners, shear);
     }
@@ -37,8 +34,8 @@ pub(super) fn watertight<S: Scalar>(
     if is_in_range && is_sure(&sight) {
         Some(sight.hit(shear))
     } else {
-        let [x, y, _] = sight.corners.map(S::Vec3::to_array);
-        settle([x, y], corners, [ray.origin, ray.direction])
+        let [x, y, _] = sight.corners;
+        settle([x, y], corners, ray)
     }
 }
 
@@ -60,7 +57,7 @@ pub(super) fn watertight_widest<S: Scalar>(
     if is_sure(&sight) {
         Some(sight.hit(shear))
     } else {
-        let (depth, at) = settle_widest(sight.corners.map(S::Vec3::to_array))?;
+        let (depth, at) = settle_widest(sight.corners)?;
         Some((shear.t(depth), at))
     }
 }
@@ -70,7 +67,7 @@ pub(super) fn watertight_widest<S: Scalar>(
 fn is_sure<S: Scalar>(sight: &Sight<S>) -> bool {
     let ([a, b, c], [x, y, z]) = (sight.weights, sight.corners);
     let is_inside = a != S::ZERO && b != S::ZERO && c != S::ZERO;
-    is_inside && (is_ahead(z.to_array()) || sight.volume.abs() > doubt(x, y, z))
+    is_inside && (is_ahead(z) || sight.volume.abs() > doubt(x, y, z))
 }
 
 /// The depth of the hit of a triangle whose corners are at `x`, `y` and `z` in the ray's frame; none if the ray
@@ -104,17 +101,14 @@ fn is_ahead<S: Scalar>([a, b, c]: [S; 3]) -> bool {
 }
 
 /// In epsilons.
-pub(super) const DOUBT: f64 = 40.0;
+pub(crate) const DOUBT: f64 = 40.0;
 
 /// More than the rounding error of the volume (x cross y) . z: x and y are each off by up to 2 epsilon times
 /// the sum of themselves and z, and each product by some more. In 20,000,000 random cases the error was at most a
 /// sixth of it.
 #[inline(always)]
-fn doubt<S: Scalar>(x: S::Vec3, y: S::Vec3, z: S::Vec3) -> S {
-    let largest = |v: S::Vec3| {
-        let [a, b, c] = v.to_array();
-        max(max(a.abs(), b.abs()), c.abs())
-    };
+fn doubt<S: Scalar>(x: [S; 3], y: [S; 3], z: [S; 3]) -> S {
+    let largest = |[a, b, c]: [S; 3]| max(max(a.abs(), b.abs()), c.abs());
     let (x, y, z) = (largest(x), largest(y), largest(z));
     S::from_f64(DOUBT) * S::EPSILON * z * (z * (x + y) + x * y)
 }
@@ -128,33 +122,26 @@ fn doubt<S: Scalar>(x: S::Vec3, y: S::Vec3, z: S::Vec3) -> S {
 /// at the price of 28 self-hits of 19,980 rays from triangles a million times their size from the origin.
 #[cold]
 #[inline(never)]
-fn settle<S: Scalar>(
-    xy: [[S; 3]; 2],
-    corners: [[S; 3]; 3],
-    ray: [[S; 3]; 2],
-) -> Option<(S, Barycentrics<S>)> {
+fn settle<S: Scalar>(xy: [[S; 3]; 2], corners: [[S; 3]; 3], ray: &Ray<S>) -> Option<(S, Barycentrics<S>)> {
     let widen = |point: [S; 3]| point.map(S::widen);
-    let [x, y] = xy.map(|lanes| WideVec3::<S>::from_array(widen(lanes)));
-    let [a, b, c] = x.cross(y).to_array();
+    let [x, y] = xy.map(widen);
+    let [a, b, c] = cross(x, y);
     let area = a + b + c;
     if is_outside([a, b, c]) || area == S::Wide::ZERO || !area.is_finite() {
         return None;
     }
-    let [origin, direction] = ray.map(widen);
-    let shear = Shear::new(&origin, &direction);
+    let shear = Shear::widened(ray);
     let t = shear.t(plane_depth(corners.map(widen), &shear));
     Some((S::narrow(t), Barycentrics { u: S::narrow(b / area), v: S::narrow(c / area) }))
 }
 
-type WideVec3<S> = <<S as Scalar>::Wide as Scalar>::Vec3;
-
 /// The third coordinate at which the ray meets the triangle's plane, but no farther than the corners'.
 fn plane_depth<S: Scalar>(corners: [[S; 3]; 3], shear: &Shear<S>) -> S {
     let [x, y, z] = shear.apply(corners);
-    let weights = x.cross(y);
-    let [a, b, c] = weights.to_array();
-    let depth = weights.dot(z) / (a + b + c);
-    let [a, b, c] = z.to_array();
+    let weights = cross(x, y);
+    let [a, b, c] = weights;
+    let depth = dot(weights, z) / (a + b + c);
+    let [a, b, c] = z;
     // A ray in the plane makes a NaN, which is left out.
     min(max(depth, min(min(a, b), c)), max(max(a, b), c))
 }

@@ -1,8 +1,9 @@
 //! The triangle in exact arithmetic, as a primitive of trees.
 
 use super::intersect;
-use crate::geometry::{Aabb, PreparedRay, Scalar};
-use crate::primitive::{Corners, Intersect, OneByOne, Primitive, Triangle, Watertight};
+use crate::geometry::{Aabb, Ray, Scalar};
+use crate::leaf::OneByOne;
+use crate::primitive::{Corners, Intersect, Primitive, Triangle, Watertight};
 
 /// A triangle tested in exact arithmetic: for tests with more triangles than [`hits`](super::hits) and its
 /// like can ask one by one. Some hundred times slower than the modes that renderers use.
@@ -43,7 +44,7 @@ impl<P: Corners> Intersect for Exact<P> {
     type Payload = ();
     type Leaf = OneByOne;
 
-    fn intersect(&self, ray: &PreparedRay<P::Scalar>) -> Option<(P::Scalar, ())> {
+    fn intersect(&self, ray: &Ray<P::Scalar>) -> Option<(P::Scalar, ())> {
         let [a, b, c] = self.0.corners();
         let t: P::Scalar = intersect(&Triangle { a, b, c }, ray)?.to_scalar();
         (t < P::Scalar::INFINITY).then_some((t, ()))

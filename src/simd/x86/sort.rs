@@ -1,9 +1,8 @@
 //! What a node's children need of AVX-512 beyond the common operations: sorting them in registers.
 
-use core::arch::x86_64::*;
-use fearless_simd::Avx512;
-
-use super::lanes::Window;
+use super::Avx512;
+use super::arch::*;
+use crate::simd::Window;
 
 /// Of two children or more, the lane of the nearest; all are written to the windows, farthest first.
 ///
@@ -154,35 +153,49 @@ fn sort16(mut v: __m512i) -> __m512i {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::simd::{Isa, KernelLanes};
     use core::mem::MaybeUninit;
-    use fearless_simd::prelude::*;
-    use fearless_simd::{Level, f32x16, u32x16};
 
     /// Distances with ties and zeros, all sets of children of two and more.
     #[test]
     fn children_are_sorted_farthest_first_and_none_is_lost() {
-        let level = Level::try_detect().unwrap_or_else(Level::baseline);
-        let Some(isa) = level.as_avx512() else { return };
+        let Some(isa) = super::Avx512::detect() else { return };
         let distances: [f32; 16] = core::array::from_fn(|lane| ((lane * 7 + 3) % 11) as f32 * 0.75);
-        let near = f32x16::load_array(isa, distances);
-        let children = u32x16::load_array(isa, core::array::from_fn(|lane| 1000 + lane as u32));
-        for met in (3..=u16::MAX).filter(|met| met.count_ones() > 1) {
+        // SAFETY: sixteen scalars.
+        let near = unsafe { <super::Avx512 as Isa>::F32x16::load(isa, distances.as_ptr()) };
+        let children: [u32; 16] = core::array::from_fn(|lane| 1000 + lane as u32);
+        for met in (3..=u32::from(u16::MAX)).filter(|met| met.count_ones() > 1) {
             let mut references = [MaybeUninit::new(0u32); 16];
             let mut entries = [MaybeUninit::new(0.0f32); 16];
-            let nearest = sort(isa, near.into(), met, children.into(), &mut references, &mut entries);
+            let nearest = near.sort(met, &children, &mut references, &mut entries);
             // SAFETY: initialised above.
             let (references, entries) =
                 unsafe { (references.map(|x| x.assume_init()), entries.map(|x| x.assume_init())) };
             let count = met.count_ones() as usize;
             let lanes = references[..count].iter().map(|child| child - 1000);
             assert_eq!(lanes.clone().fold(0, |set, lane| set | 1 << lane), met, "{met:b}");
-            assert_eq!(lanes.clone().next_back(), Some(nearest), "{met:b}");
+            assert_eq!(lanes.clone().next_back(), nearest, "{met:b}");
             assert!(entries[..count].is_sorted_by(|a, b| a >= b), "{met:b}: {entries:?}");
             for (lane, &entry) in lanes.zip(&entries) {
                 let distance = distances[lane as usize];
                 assert!(entry <= distance && entry >= distance * (1.0 - 16.0 * f32::EPSILON), "{met:b}");
             }
+        }
+    }
+
+    #[test]
+    fn children_met_are_packed_in_order() {
+        let Some(isa) = super::Avx512::detect() else { return };
+        let children: [u32; 16] = core::array::from_fn(|lane| 1000 + lane as u32);
+        for met in 0..=u32::from(u16::MAX) {
+            let mut references = [MaybeUninit::new(0u32); 16];
+            assert!(<super::Avx512 as Isa>::F32x16::compress(isa, met, &children, &mut references));
+            // SAFETY: initialised above.
+            let references = references.map(|x| unsafe { x.assume_init() });
+            let lanes = (0..16).filter(|lane| met >> lane & 1 != 0);
+            assert!(
+                lanes.map(|lane| 1000 + lane).eq(references[..met.count_ones() as usize].iter().copied())
+            );
         }
     }
 }

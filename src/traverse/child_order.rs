@@ -1,6 +1,6 @@
 //! Which of a node's children is next, and in what order the others wait.
 
-use super::pending::Pending;
+use super::traversal_stack::TraversalStack;
 use crate::geometry::Scalar;
 use crate::layout::{Reference, WideNode};
 use crate::simd::Lanes;
@@ -19,23 +19,23 @@ pub(super) fn nearest<S: Scalar, L: Lanes<S>, const N: usize>(
     near: L,
     met: u32,
     t_min: S,
-    pending: &mut Pending<'_, S>,
+    stack: &mut TraversalStack<'_, S>,
 ) -> Reference {
     let count = met.count_ones() as usize;
     if t_min >= S::ZERO {
-        let (references, entries) = pending.windows();
+        let (references, entries) = stack.windows();
         let references = Reference::window(references);
         if let Some(lane) = near.sort(met, Reference::bits(node.children()), references, entries) {
-            pending.grow(count - 1);
+            stack.grow(count - 1);
             return node.children()[lane as usize % N];
         }
     }
     let mut distances = Distances([S::ZERO; 16]);
     near.store(&mut distances.0);
     if count <= FEW {
-        nearest_of_few(node, &distances, met, pending)
+        nearest_of_few(node, &distances, met, stack)
     } else {
-        nearest_of_many(node, &distances, met, pending)
+        nearest_of_many(node, &distances, met, stack)
     }
 }
 
@@ -46,7 +46,7 @@ fn nearest_of_few<S: Scalar, const N: usize>(
     node: &impl WideNode<S, N>,
     distances: &Distances<S>,
     mut met: u32,
-    pending: &mut Pending<'_, S>,
+    stack: &mut TraversalStack<'_, S>,
 ) -> Reference {
     let count = met.count_ones() as usize;
     // A distance but for its last bits, which are its lane. Behind those that there are, zeros.
@@ -61,13 +61,13 @@ fn nearest_of_few<S: Scalar, const N: usize>(
     let ((a, b), (c, d)) = (order(a, b), order(c, d));
     let ((a, c), (b, d)) = (order(a, c), order(b, d));
     let (b, c) = order(b, c);
-    let (references, entries) = pending.windows();
+    let (references, entries) = stack.windows();
     for (place, key) in [a, b, c].into_iter().enumerate() {
         let lane = (key & 15) as usize;
         references[place].write(node.children()[lane % N]);
         entries[place].write(distances.of(lane));
     }
-    pending.grow(count - 1);
+    stack.grow(count - 1);
     let of_three_or_four = if count == 3 { c } else { d };
     let nearest = if count == 2 { b } else { of_three_or_four };
     node.children()[(nearest & 15) as usize % N]
@@ -78,20 +78,20 @@ fn nearest_of_many<S: Scalar, const N: usize>(
     node: &impl WideNode<S, N>,
     distances: &Distances<S>,
     mut met: u32,
-    pending: &mut Pending<'_, S>,
+    stack: &mut TraversalStack<'_, S>,
 ) -> Reference {
     let [first, second] = [next_lane(&mut met), next_lane(&mut met)];
     let (mut nearest, farthest) =
         if distances.of(second) < distances.of(first) { (second, first) } else { (first, second) };
-    let base = pending.len();
-    pending.push(node.children()[farthest % N], distances.of(farthest));
+    let base = stack.len();
+    stack.push(node.children()[farthest % N], distances.of(farthest));
     while met != 0 {
         let mut lane = next_lane(&mut met);
         if distances.of(lane) < distances.of(nearest) {
             core::mem::swap(&mut lane, &mut nearest);
         }
-        pending.push(node.children()[lane % N], distances.of(lane));
-        pending.sink(base);
+        stack.push(node.children()[lane % N], distances.of(lane));
+        stack.sink(base);
     }
     node.children()[nearest % N]
 }
@@ -102,22 +102,22 @@ pub(super) fn last<S: Scalar, L: Lanes<S>, const N: usize>(
     isa: L::Isa,
     node: &impl WideNode<S, N>,
     mut met: u32,
-    pending: &mut Pending<'_, S>,
+    stack: &mut TraversalStack<'_, S>,
 ) -> Reference {
     let last = met.ilog2();
     met ^= 1 << last;
     let count = met.count_ones() as usize;
-    let (references, _) = pending.windows();
+    let (references, _) = stack.windows();
     if L::compress(isa, met, Reference::bits(node.children()), Reference::window(references)) {
-        pending.grow(count);
+        stack.grow(count);
     } else if count <= FEW {
         for reference in &mut references[..FEW] {
             reference.write(node.children()[next_lane(&mut met) % N]);
         }
-        pending.grow(count);
+        stack.grow(count);
     } else {
         while met != 0 {
-            pending.push(node.children()[next_lane(&mut met) % N], S::ZERO);
+            stack.push(node.children()[next_lane(&mut met) % N], S::ZERO);
         }
     }
     node.children()[last as usize % N]
@@ -144,10 +144,10 @@ impl<S: Copy> Distances<S> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::traversal_stack::Memory;
     use super::*;
     use crate::geometry::Aabb;
     use crate::layout::{Form, Packed};
-    use crate::query::pending::Memory;
     use alloc::vec;
 
     type Node = <Packed as Form<f32, 16>>::Node;
@@ -166,17 +166,17 @@ mod tests {
                     continue;
                 }
                 let mut memory = Memory::new();
-                let mut pending = Pending::new(&mut memory, 0);
-                pending.push(Reference::node(0), 9.0);
+                let mut stack = TraversalStack::new(&mut memory);
+                stack.push(Reference::node(0), 9.0);
                 let of = if is_few { nearest_of_few } else { nearest_of_many };
-                let mut lanes = vec![lane_of(of(&node, &distances, met, &mut pending))];
-                while pending.len() > 1 {
+                let mut lanes = vec![lane_of(of(&node, &distances, met, &mut stack))];
+                while stack.len() > 1 {
                     // An entry is the child's own.
-                    let before = pending.len();
-                    let lane = lane_of(pending.pop().unwrap());
-                    pending.grow(1);
-                    assert_eq!(pending.pop_before(distances.of(lane)), Some(child(lane)), "{met:b}");
-                    assert_eq!(pending.len(), before - 1);
+                    let before = stack.len();
+                    let lane = lane_of(stack.pop().unwrap());
+                    stack.grow(1);
+                    assert_eq!(stack.pop_before(distances.of(lane)), Some(child(lane)), "{met:b}");
+                    assert_eq!(stack.len(), before - 1);
                     lanes.push(lane);
                 }
                 assert!(

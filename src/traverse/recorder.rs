@@ -2,7 +2,7 @@
 
 use core::ops::AddAssign;
 
-/// Is told of each step of a query. A type parameter: `()` records nothing and costs nothing.
+/// Is told of each step of a query, once the query is done. `()` records nothing and costs nothing.
 pub trait Recorder {
     /// A valid ray sets out.
     #[inline(always)]
@@ -16,9 +16,20 @@ pub trait Recorder {
     /// A primitive is tested.
     #[inline(always)]
     fn primitive(&mut self) {}
+    /// Whether it is to be told anything.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn records(&self) -> bool {
+        true
+    }
 }
 
-impl Recorder for () {}
+impl Recorder for () {
+    #[inline(always)]
+    fn records(&self) -> bool {
+        false
+    }
+}
 
 impl<R: Recorder + ?Sized> Recorder for &mut R {
     #[inline(always)]
@@ -36,6 +47,10 @@ impl<R: Recorder + ?Sized> Recorder for &mut R {
     #[inline(always)]
     fn primitive(&mut self) {
         (**self).primitive();
+    }
+    #[inline(always)]
+    fn records(&self) -> bool {
+        (**self).records()
     }
 }
 
@@ -77,6 +92,14 @@ impl Counters {
     /// The mean number of primitives tested; 0 without rays.
     pub fn primitives_per_ray(&self) -> f64 {
         self.per_ray(self.primitives)
+    }
+
+    /// Tells a recorder of as many steps.
+    pub(crate) fn tell(&self, recorder: &mut impl Recorder) {
+        (0..self.rays).for_each(|_| recorder.ray());
+        (0..self.nodes).for_each(|_| recorder.node());
+        (0..self.leaves).for_each(|_| recorder.leaf());
+        (0..self.primitives).for_each(|_| recorder.primitive());
     }
 
     fn per_ray(&self, count: u64) -> f64 {

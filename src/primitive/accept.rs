@@ -1,10 +1,10 @@
 //! What counts as a hit: one rule for the tree, the naive loop, and every query.
 
-use crate::geometry::{PreparedRay, Scalar, max};
-use crate::primitive::Intersect;
+use super::Intersect;
+use crate::geometry::{Ray, Scalar, Slabs, max};
 
-/// The t and the payload of the ray's hit with `primitive`, if it has one in
-/// [`ray.t_min`, `limit`], where `limit` is at most `ray.t_max`.
+/// The t and the payload of the ray's hit with `primitive`, if it has one in the ray's interval, whose end a query narrows to
+/// the closest hit so far. `slabs` are the ray's.
 ///
 /// # The own-box rule
 ///
@@ -17,7 +17,7 @@ use crate::primitive::Intersect;
 /// Let h be a hit accepted with t >= near(own box). Every ancestor's box contains the own box, so by
 /// the monotony of the slab test (see `Slabs`) near(ancestor) <= near(own box) <= t and
 /// far(ancestor) >= far(own box) >= near(own box), t_min. An ancestor is pruned only if near > far, far < t_min
-/// or near > limit. The first two are excluded; the third too as long as limit >= t, which holds
+/// or near > t_max. The first two are excluded; the third too as long as t_max >= t, which holds
 /// until a hit with a smaller t has been found. So the hit with the smallest (t, index) is always
 /// reached, and being the smallest by a total order, it does not depend on the order of visits.
 ///
@@ -29,17 +29,16 @@ use crate::primitive::Intersect;
 #[inline(always)]
 pub(crate) fn accept<P: Intersect>(
     primitive: &P,
-    ray: &PreparedRay<P::Scalar>,
-    limit: P::Scalar,
+    ray: &Ray<P::Scalar>,
+    slabs: &Slabs<P::Scalar>,
 ) -> Option<(P::Scalar, P::Payload)> {
     let (t, payload) = primitive.intersect(ray)?;
     // Most hits end here, and every NaN; raising t would not bring them back.
-    let in_reach = t >= ray.t_min && t <= limit;
-    if !in_reach {
+    if !ray.includes(t) {
         return None;
     }
-    let t = max(t, ray.slabs.entry(&primitive.aabb_of_valid())?) + P::Scalar::ZERO;
-    (t <= limit && t.is_finite()).then_some((t, payload))
+    let t = max(t, slabs.entry(&primitive.aabb_of_valid())?) + P::Scalar::ZERO;
+    (t <= ray.t_max && t.is_finite()).then_some((t, payload))
 }
 
 /// Whether a hit at (`t`, `index`) comes before another: by t, equal ones by index.

@@ -22,10 +22,10 @@
 
 use crate::geometry::{Ray, Scalar, Slabs};
 use crate::layout::WideNode;
-use crate::simd::Lanes;
+use crate::simd::{Isa, KernelLanes, Lanes};
 
 /// The slabs in lanes.
-pub(super) struct SlabLanes<S, L> {
+pub(super) struct BoxTest<S, L> {
     origin: [L; 3],
     inv_near: [L; 3],
     inv_far: [L; 3],
@@ -33,22 +33,48 @@ pub(super) struct SlabLanes<S, L> {
     negative: [bool; 3],
     pub t_min: S,
     /// What is said above holds: inverses are finite, and neither t_min nor t_max has a minus sign. Later limits have none
-    /// either, since no hit's t has (see `query::accept` and the packed leaves).
+    /// either, since no hit's t has (see `primitive::accept` and the packed leaves).
     are_ordered_by_bits: bool,
 }
 
-impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
+/// [`Ray::is_ordinary`] in lanes, which hold the same: scalars are read one by one, so that those of a ray that was just
+/// written come straight from the stores. A compiler would read several at once, and wait for the cache.
+#[inline(always)]
+pub(super) fn is_ordinary<S: Scalar, I: Isa>(isa: I, ray: &Ray<S>) -> bool {
+    let splat = |x: S| S::Times4::<I>::splat(isa, x);
+    let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin, ray.direction);
+    let (ox, oy, oz) = (splat(ox).abs(), splat(oy).abs(), splat(oz).abs());
+    let (dx, dy, dz) = (splat(dx).abs(), splat(dy).abs(), splat(dz).abs());
+    let (large, zero) = (splat(S::LARGE_AREA), splat(S::ZERO));
+    let (t_min, t_max) = (splat(ray.t_min), splat(ray.t_max));
+    let all = (ox + oy + oz).lt(large)
+        & (dx + dy + dz).lt(large)
+        & splat(S::ONE / S::LARGE_AREA).lt(dx.min(dy).min(dz))
+        & zero.le(t_min)
+        & zero.lt(t_max)
+        & t_min.le(t_max);
+    S::Times4::<I>::bits(all) & 1 != 0
+}
+
+impl<S: Scalar, L: Lanes<S>> BoxTest<S, L> {
+    /// `is_ordinary` is what the ray says.
     #[inline(always)]
-    pub fn new(isa: L::Isa, slabs: &Slabs<S>, ray: &Ray<S>) -> Self {
-        let splat = |[x, y, z]: [S; 3]| [L::splat(isa, x), L::splat(isa, y), L::splat(isa, z)];
+    pub fn new(isa: L::Isa, ray: &Ray<S>, is_ordinary: bool) -> Self {
+        let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin, ray.direction);
+        // In lanes, for the same reason; as `Slabs` computes.
+        let padding = S::from_f64(5.0) * S::EPSILON;
+        let splat = |x: S| S::Times4::<L::Isa>::splat(isa, x);
+        let (one, near, far) = (splat(S::ONE), splat(S::ONE - padding), splat(S::ONE + padding));
+        let (x, y, z) = (one / splat(dx), one / splat(dy), one / splat(dz));
+        let wide = |x: S::Times4<L::Isa>| L::splat(isa, x.lane(0));
         Self {
-            origin: splat(slabs.origin),
-            inv_near: splat(slabs.inv_near),
-            inv_far: splat(slabs.inv_far),
-            negative: slabs.negative,
+            origin: [L::splat(isa, ox), L::splat(isa, oy), L::splat(isa, oz)],
+            inv_near: [wide(x * near), wide(y * near), wide(z * near)],
+            inv_far: [wide(x * far), wide(y * far), wide(z * far)],
+            negative: [dx.has_minus_sign(), dy.has_minus_sign(), dz.has_minus_sign()],
             // +0, whose bits are those of an integer.
-            t_min: slabs.t_min + S::ZERO,
-            are_ordered_by_bits: L::orders_by_bits(isa) && (slabs.is_ordinary || is_ordered_by_bits(ray)),
+            t_min: ray.t_min + S::ZERO,
+            are_ordered_by_bits: L::orders_by_bits(isa) && (is_ordinary || is_ordered_by_bits(ray)),
         }
     }
 
@@ -72,8 +98,7 @@ impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
             (near, L::bits(near.not_after(far)) & node.lanes())
         } else if self.t_min < S::ZERO {
             let (near, met) = enter_behind(node, ray, limit);
-            // SAFETY: sixteen scalars, and no lanes are more.
-            (unsafe { L::load(isa, near.as_ptr()) }, met)
+            (L::from_slice(isa, &near), met)
         } else {
             // A plane through the origin, on an axis along which the ray does not move, is left out.
             let (mut near, mut far) = (t_min, t_max);
@@ -89,9 +114,7 @@ impl<S: Scalar, L: Lanes<S>> SlabLanes<S, L> {
     /// How far from the origin the near planes and the far planes across an axis are.
     #[inline(always)]
     fn distances<T: WideNode<S, N>, const N: usize>(&self, node: &T, axis: usize) -> [L; 2] {
-        let first = usize::from(self.negative[axis]) * T::ROW;
-        // SAFETY: one of three axes, and 0 or a row's length.
-        let [first, last] = unsafe { node.planes::<L>(self.origin[0].isa(), axis, first) };
+        let [first, last] = node.planes::<L>(self.origin[0].isa(), axis, self.negative[axis]);
         [first - self.origin[axis], last - self.origin[axis]]
     }
 }

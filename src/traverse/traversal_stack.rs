@@ -7,7 +7,7 @@ use core::mem::MaybeUninit;
 /// With room for all lanes of one more node, of which some are written and not kept.
 const CAPACITY: usize = MAX_PENDING + 16;
 
-/// Memory for [`Pending`], on the thread's stack and not cleared. For `f32` it is below a page: above, every query
+/// Memory for [`TraversalStack`], on the thread's stack and not cleared. For `f32` it is below a page: above, every query
 /// would first touch it page by page.
 pub(super) struct Memory<S> {
     references: [MaybeUninit<Reference>; CAPACITY],
@@ -25,17 +25,16 @@ impl<S: Copy> Memory<S> {
 }
 
 /// References, and where the ray enters their boxes. A last-in first-out stack.
-pub(super) struct Pending<'m, S> {
+pub(super) struct TraversalStack<'m, S> {
     memory: &'m mut Memory<S>,
     /// `references[..len]` are initialised, and of a query in order so are `entries[..len]`.
     len: usize,
 }
 
-impl<'m, S: Copy + PartialOrd> Pending<'m, S> {
-    /// `len` is 0, or what [`len`](Self::len) was of the last one on the same memory.
+impl<'m, S: Copy + PartialOrd> TraversalStack<'m, S> {
     #[inline(always)]
-    pub fn new(memory: &'m mut Memory<S>, len: usize) -> Self {
-        Self { memory, len }
+    pub fn new(memory: &'m mut Memory<S>) -> Self {
+        Self { memory, len: 0 }
     }
 
     #[inline(always)]
@@ -124,15 +123,15 @@ mod tests {
     fn the_farthest_sinks_and_what_is_beyond_the_limit_is_dropped() {
         let place = |k: usize| Reference::node(k * 64);
         let mut memory = Memory::new();
-        let mut pending = Pending::<f32>::new(&mut memory, 0);
-        pending.push(place(0), 1.0);
+        let mut stack = TraversalStack::<f32>::new(&mut memory);
+        stack.push(place(0), 1.0);
         for (k, entry) in [(1, 3.0), (2, 5.0), (3, 4.0)] {
-            pending.push(place(k), entry);
-            pending.sink(1);
+            stack.push(place(k), entry);
+            stack.sink(1);
         }
-        assert_eq!(pending.pop_before(3.5), Some(place(1)));
-        assert_eq!(pending.pop(), Some(place(3)));
-        assert_eq!(pending.pop_before(0.5), None);
-        assert_eq!(pending.pop(), None);
+        assert_eq!(stack.pop_before(3.5), Some(place(1)));
+        assert_eq!(stack.pop(), Some(place(3)));
+        assert_eq!(stack.pop_before(0.5), None);
+        assert_eq!(stack.pop(), None);
     }
 }

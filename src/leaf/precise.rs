@@ -1,0 +1,67 @@
+//! Triangles whose test is in `f64`, sieved in lanes of `f32`.
+
+use super::sealed::{Kernel, LeafKind};
+use super::triangles::{EdgeTests, RayFrame, barycentrics, details, largest, triangle};
+use super::{LaneHits, LaneTest, Operands, is_ahead_and_in_range};
+use crate::geometry::{Ray, Slabs};
+use crate::primitive::{Barycentrics, Precise, accept};
+use crate::simd::Lanes;
+
+/// The leaf of [`Precise`] triangles: nine coordinates each, by which those are left out whose sides
+/// are beyond doubt in `f32` already.
+#[derive(Clone, Copy, Debug)]
+pub struct PreciseLeaf;
+
+impl LeafKind<f32, Barycentrics> for PreciseLeaf {
+    const OPERANDS: usize = 9;
+    const IS_SETTLED_IN_LANES: bool = true;
+    const KERNEL: Kernel = Kernel::Precise;
+
+    #[inline(always)]
+    fn payload(details: [f32; 3]) -> Option<Barycentrics> {
+        Some(barycentrics(details))
+    }
+}
+
+impl LaneTest<f32> for PreciseLeaf {
+    const OPERANDS: usize = 9;
+    type Frame = RayFrame<f32>;
+
+    #[inline(always)]
+    fn frame(ray: &Ray) -> RayFrame<f32> {
+        RayFrame::of(ray)
+    }
+
+    #[inline(always)]
+    fn suits(ray: &Ray) -> bool {
+        is_ahead_and_in_range(ray)
+    }
+
+    /// A weight is a difference of two products of places in the frame, each of them off by less than 2 epsilon of what
+    /// it would be if all signs were plus: so the weight is, by less than 16 epsilon of the largest such product. A slope, a
+    /// place or a product that underflows is off by more than its epsilons, but by less than one of the smallest normal number,
+    /// which is added to each.
+    #[inline(always)]
+    fn test<L: Lanes<f32>>(
+        operands: &Operands<'_, f32, L>,
+        _: &Ray,
+        frame: &RayFrame<f32>,
+        _: f32,
+    ) -> LaneHits<L> {
+        let EdgeTests { x, y, z, weights: [a, b, c], .. } = EdgeTests::new(operands, &frame.shear);
+        let [dx, dy, dz] = frame.shear.direction;
+        let (x, y, z) = (largest(x), largest(y), largest(z));
+        let splat = |x: f32| operands.splat(x.abs());
+        let tiny = operands.splat(f32::MIN_POSITIVE);
+        let (x, y) =
+            (x * splat(dz) + z * (splat(dx) + tiny) + tiny, y * splat(dz) + z * (splat(dy) + tiny) + tiny);
+        let doubt = x * y * operands.splat(16.0 * f32::EPSILON) + tiny;
+        let (lowest, highest) = (a.min(b).min(c), a.max(b).max(c));
+        let zero = operands.splat(0.0);
+        LaneHits::undecided(L::bits((zero - doubt).le(lowest) | highest.le(doubt)), operands)
+    }
+
+    fn one(operands: &[f32], ray: &Ray, slabs: &Slabs<f32>) -> Option<(f32, [f32; 3])> {
+        accept(&Precise(triangle(operands)), ray, slabs).map(details)
+    }
+}

@@ -1,0 +1,55 @@
+//! The primitives of a leaf that are asked.
+
+use crate::geometry::Scalar;
+use crate::leaf::sealed::LeafKind;
+use crate::leaf::{GATHERED, LEAF_WIDTH, Primitives, PutOperands};
+use crate::primitive::Intersect;
+use crate::traverse::{AskedLeaf, AskedRay};
+use core::ops::ControlFlow;
+
+/// Shows the primitives of a leaf with their indices: all, or those that the type's sieve lets through, until `ask` breaks.
+#[inline(always)]
+pub(super) fn each<P: Intersect>(
+    primitives: &[P],
+    leaf: AskedLeaf<'_, P::Scalar>,
+    ray: &mut AskedRay<P::Scalar>,
+    mut ask: impl FnMut(&P, u32, &mut AskedRay<P::Scalar>) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let operands = const { <P::Leaf as LeafKind<P::Scalar, P::Payload>>::OPERANDS };
+    // Leaves of the binary tree are of any length, and have no lanes.
+    let sieve = ray.sieve.filter(|_| operands > 0 && leaf.indices.len() <= LEAF_WIDTH);
+    if let Some(backend) = sieve {
+        let mut gathered = [[P::Scalar::ZERO; LEAF_WIDTH]; GATHERED];
+        let rows = if leaf.rows.len() == operands {
+            leaf.rows
+        } else if let Some(rows) = gathered.get_mut(..operands) {
+            Primitives(primitives).put_rows(leaf.indices, rows);
+            rows
+        } else {
+            return all(primitives, leaf.indices, ray, ask);
+        };
+        ray.steps.primitives += leaf.indices.len() as u64;
+        let lanes = <P::Leaf as LeafKind<P::Scalar, P::Payload>>::candidates(backend, rows, &ray.ray);
+        for (lane, &index) in leaf.indices.iter().enumerate() {
+            if lanes >> lane & 1 != 0 {
+                ask(&primitives[index as usize], index, ray)?;
+            }
+        }
+        return ControlFlow::Continue(());
+    }
+    all(primitives, leaf.indices, ray, ask)
+}
+
+#[inline(always)]
+fn all<P: Intersect>(
+    primitives: &[P],
+    indices: &[u32],
+    ray: &mut AskedRay<P::Scalar>,
+    mut ask: impl FnMut(&P, u32, &mut AskedRay<P::Scalar>) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    for &index in indices {
+        ray.steps.primitives += 1;
+        ask(&primitives[index as usize], index, ray)?;
+    }
+    ControlFlow::Continue(())
+}

@@ -1,0 +1,50 @@
+//! x86: SSE2, AVX2 and AVX-512.
+
+mod avx2;
+mod avx512;
+mod sort;
+mod sse2;
+mod twice;
+
+#[cfg(target_arch = "x86")]
+use core::arch::x86 as arch;
+#[cfg(target_arch = "x86_64")]
+use core::arch::x86_64 as arch;
+
+pub use avx2::Avx2;
+pub use avx512::Avx512;
+pub use sse2::Sse2;
+
+/// Whether the processor has all of these; without `std`, whether the build's target has.
+macro_rules! has {
+    ($($feature:tt),*) => {{
+        #[cfg(feature = "std")]
+        let has = $(std::is_x86_feature_detected!($feature))&&*;
+        #[cfg(not(feature = "std"))]
+        let has = cfg!(all($(target_feature = $feature),*));
+        has
+    }};
+}
+
+/// Twice as many lanes, which are one vector nevertheless.
+macro_rules! halves {
+    ($lanes:ident of $half:ident: join($first:ident, $second:ident) = $join:expr, split($both:ident) = $split:expr) => {
+        impl crate::simd::Halves<$half> for $lanes {
+            #[inline(always)]
+            fn of_halves([first, second]: [$half; 2]) -> Self {
+                let ($first, $second) = (first.0, second.0);
+                // SAFETY: the vectors' token.
+                Self(unsafe { $join }, first.1)
+            }
+            #[inline(always)]
+            fn to_halves(self) -> [$half; 2] {
+                let $both = self.0;
+                // SAFETY: the vector's token.
+                let [first, second] = unsafe { $split };
+                [$half(first, self.1), $half(second, self.1)]
+            }
+        }
+    };
+}
+
+use {halves, has};

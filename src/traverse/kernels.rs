@@ -1,0 +1,392 @@
+//! The kernels that this crate compiles, in tables by scalar, layout and kind of leaf.
+//!
+//! Functions without type parameters are compiled in this crate, generic ones in that of whoever uses them: so each entry is a
+//! function of its own, made by a macro. A table is a constant, from which a query takes the one function that its types
+//! name: the others do not get into the user's program.
+//!
+//! Where speed matters most, closest and any hits of packed trees, the leaf's test is inlined; all else has a loop that asks for
+//! each leaf, late-bound, so that there are as few loops as layouts, scalars and instruction sets make.
+
+use super::ask_lanes::{AskLanes, Wanted};
+use super::best_first::BestFirst;
+use super::box_test::is_ordinary;
+use super::recorder::Counters;
+use super::seam::{Ask, AskedRay};
+use super::visitor::{Any, Asked, Found, InLanes};
+use super::{binary, wide};
+use crate::geometry::{Ray, Scalar};
+use crate::layout::{Compact, Form, NOBODY, Packed, Reference, WIDTH, WideTree};
+use crate::leaf::{FastLeaf, LaneTest, PreciseLeaf, PutOperands, SphereLeaf, WatertightLeaf};
+use crate::simd::{Backend, Isa, Kernel};
+use crate::tree::{Child, Tree};
+use core::marker::PhantomData;
+
+/// A wide tree of one form.
+type Wide<S, F> = WideTree<S, WIDTH, F>;
+
+/// Kernels for leaves whose operands say all of their primitives.
+#[expect(clippy::type_complexity, reason = "a table of functions says what each takes")]
+pub struct LaneKernels<S, F> {
+    /// The closest hit of each of as many rays.
+    pub closest: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &[Ray<S>], &mut [Found<S>]),
+    /// Whether anything is hit, of each of as many rays.
+    pub any: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &[Ray<S>], &mut [bool]),
+    /// Boxes are opened until the next hit is known, of a valid ray.
+    pub open:
+        fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>, &mut BestFirst<S, Reference>) -> Counters,
+    /// The same as `closest` and `any` of one ray, with steps counted.
+    pub counted: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>, IsClosest) -> (Found<S>, Counters),
+}
+
+/// Whether the closest hit is wanted, or any.
+pub type IsClosest = bool;
+
+/// Kernels for leaves that are asked.
+#[expect(clippy::type_complexity, reason = "a table of functions says what each takes")]
+pub struct AskKernels<S, L, B> {
+    pub closest: fn(&L, Backend, &mut AskedRay<S>, &mut dyn Ask<S>),
+    pub any: fn(&L, Backend, &mut AskedRay<S>, &mut dyn Ask<S>),
+    pub open: fn(&L, Backend, &mut AskedRay<S>, &mut dyn Ask<S>, &mut BestFirst<S, B>),
+}
+
+/// All kernels for a scalar.
+pub trait ScalarKernels: Sized {
+    /// By `leaf::sealed::Kernel`.
+    const PACKED: [LaneKernels<Self, Packed>; 4];
+    const COMPACT: [LaneKernels<Self, Compact>; 4];
+    const PACKED_ASKED: AskKernels<Self, Wide<Self, Packed>, Reference>;
+    const COMPACT_ASKED: AskKernels<Self, Wide<Self, Compact>, Reference>;
+    const BINARY: AskKernels<Self, Tree<Self>, Child>;
+}
+
+/// The kernels of a form of wide trees.
+pub trait FormKernels<S: Scalar>: Form<S, WIDTH> {
+    const IN_LANES: [LaneKernels<S, Self>; 4];
+    const ASKED: AskKernels<S, Wide<S, Self>, Reference>;
+}
+
+impl<S: Scalar> FormKernels<S> for Packed {
+    const IN_LANES: [LaneKernels<S, Self>; 4] = S::PACKED;
+    const ASKED: AskKernels<S, Wide<S, Self>, Reference> = S::PACKED_ASKED;
+}
+
+impl<S: Scalar> FormKernels<S> for Compact {
+    const IN_LANES: [LaneKernels<S, Self>; 4] = S::COMPACT;
+    const ASKED: AskKernels<S, Wide<S, Self>, Reference> = S::COMPACT_ASKED;
+}
+
+/// The closest hits of a list of rays, the leaf's test inlined.
+struct Closest<'q, S: Scalar, F: Form<S, WIDTH>, T> {
+    tree: &'q Wide<S, F>,
+    rays: &'q [Ray<S>],
+    found: &'q mut [Found<S>],
+    test: PhantomData<T>,
+}
+
+impl<S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>> Kernel for Closest<'_, S, F, T> {
+    const IS_WIDE: bool = true;
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: Isa>(self, isa: I) {
+        let Self { tree, rays, found, .. } = self;
+        check_operands::<S, F, T>(tree);
+        // By number: `zip` is a call in builds of several codegen units.
+        for place in 0..rays.len().min(found.len()) {
+            let (ray, found) = (&rays[place], &mut found[place]);
+            *found = Found::none(ray.t_max);
+            let is_ordinary = is_ordinary(isa, ray);
+            if let Some(suits) = suits::<S, F, T>(tree, ray, is_ordinary) {
+                let mut visitor = InLanes::<S, T, _>::new(*found, suits);
+                wide::traverse(isa, tree, ray, is_ordinary, &mut visitor);
+                *found = visitor.query;
+            }
+        }
+    }
+}
+
+/// Whether rays of a list hit anything, the leaf's test inlined.
+struct AnyHit<'q, S: Scalar, F: Form<S, WIDTH>, T> {
+    tree: &'q Wide<S, F>,
+    rays: &'q [Ray<S>],
+    found: &'q mut [bool],
+    test: PhantomData<T>,
+}
+
+impl<S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>> Kernel for AnyHit<'_, S, F, T> {
+    const IS_WIDE: bool = true;
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: Isa>(self, isa: I) {
+        let Self { tree, rays, found, .. } = self;
+        check_operands::<S, F, T>(tree);
+        for place in 0..rays.len().min(found.len()) {
+            let (ray, found) = (&rays[place], &mut found[place]);
+            let mut query = Any { t_max: ray.t_max, is_hit: false };
+            let is_ordinary = is_ordinary(isa, ray);
+            if let Some(suits) = suits::<S, F, T>(tree, ray, is_ordinary) {
+                let mut visitor = InLanes::<S, T, _>::new(query, suits);
+                wide::traverse(isa, tree, ray, is_ordinary, &mut visitor);
+                query = visitor.query;
+            }
+            *found = query.is_hit;
+        }
+    }
+}
+
+/// What makes it safe to test leaves as those of `T`.
+#[inline(always)]
+fn check_operands<S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>>(tree: &Wide<S, F>) {
+    assert!(tree.has_operands(T::OPERANDS), "a tree is queried for what it was built of");
+}
+
+/// Whether lanes may be tested with the ray, none if it is invalid: most are ordinary, and then all is known.
+#[inline(always)]
+fn suits<S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>>(
+    tree: &Wide<S, F>,
+    ray: &Ray<S>,
+    is_ordinary: bool,
+) -> Option<bool> {
+    #[cold]
+    #[inline(never)]
+    fn of_others<S: Scalar, T: LaneTest<S>>(ray: &Ray<S>) -> Option<bool> {
+        ray.validate().is_ok().then(|| T::suits(ray))
+    }
+    let suits = if is_ordinary { true } else { of_others::<S, T>(ray)? };
+    Some(suits && tree.is_ordinary())
+}
+
+/// One ray, whose leaves are asked.
+struct AskWide<'q, S: Scalar, F: Form<S, WIDTH>, const IN_ORDER: bool> {
+    tree: &'q Wide<S, F>,
+    ray: &'q mut AskedRay<S>,
+    ask: &'q mut dyn Ask<S>,
+}
+
+impl<S: Scalar, F: Form<S, WIDTH>, const IN_ORDER: bool> Kernel for AskWide<'_, S, F, IN_ORDER> {
+    const IS_WIDE: bool = true;
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: Isa>(self, isa: I) {
+        let Self { tree, ray, ask } = self;
+        if !ray.ray.is_valid() {
+            return;
+        }
+        ray.steps.rays += 1;
+        let start = ray.ray;
+        wide::traverse(isa, tree, &start, start.is_ordinary(), &mut Asked::<S, IN_ORDER> { ask, ray });
+    }
+}
+
+/// Boxes ahead of a valid ray, whose leaves are asked.
+struct OpenWide<'q, S: Scalar, F: Form<S, WIDTH>> {
+    tree: &'q Wide<S, F>,
+    ray: &'q mut AskedRay<S>,
+    ask: &'q mut dyn Ask<S>,
+    ahead: &'q mut BestFirst<S, Reference>,
+}
+
+impl<S: Scalar, F: Form<S, WIDTH>> Kernel for OpenWide<'_, S, F> {
+    const IS_WIDE: bool = true;
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: Isa>(self, isa: I) {
+        let Self { tree, ray, ask, ahead } = self;
+        wide::open(isa, tree, ahead, &mut Asked { ask, ray });
+    }
+}
+
+/// A query of one ray whose leaves are tested by a late-bound call.
+#[inline(always)]
+fn ask_lanes<S: Scalar, F: FormKernels<S>, T: LaneTest<S>>(
+    tree: &Wide<S, F>,
+    isa: Backend,
+    put: &dyn PutOperands<S>,
+    ray: &Ray<S>,
+    wanted: Wanted,
+    kernel: impl FnOnce(&mut AskedRay<S>, &mut dyn Ask<S>),
+) -> (Found<S>, Counters) {
+    check_operands::<S, F, T>(tree);
+    let mut asked = AskedRay::new(ray);
+    if let Some(suits) = suits::<S, F, T>(tree, ray, ray.is_ordinary()) {
+        kernel(&mut asked, &mut AskLanes::<S, T>::new(put, wanted, suits.then_some(isa)));
+    }
+    (Found { t: asked.ray.t_max, index: asked.index, details: asked.details }, asked.steps)
+}
+
+/// The part of the kernels in lanes that asks, for a scalar, a form and a test.
+macro_rules! late {
+    ($scalar:ty, $form:ty, $test:ty) => {{
+        type Tree = Wide<$scalar, $form>;
+        type Put<'a> = &'a dyn PutOperands<$scalar>;
+
+        #[inline(never)]
+        fn closest(
+            tree: &Tree,
+            isa: Backend,
+            put: Put<'_>,
+            rays: &[Ray<$scalar>],
+            found: &mut [Found<$scalar>],
+        ) {
+            for (ray, found) in rays.iter().zip(found) {
+                (*found, _) = counted(tree, isa, put, ray, true);
+            }
+        }
+        #[inline(never)]
+        fn any(tree: &Tree, isa: Backend, put: Put<'_>, rays: &[Ray<$scalar>], found: &mut [bool]) {
+            for (ray, found) in rays.iter().zip(found) {
+                *found = counted(tree, isa, put, ray, false).0.index != NOBODY;
+            }
+        }
+        #[inline(never)]
+        fn open(
+            tree: &Tree,
+            isa: Backend,
+            put: Put<'_>,
+            ray: &Ray<$scalar>,
+            ahead: &mut BestFirst<$scalar, Reference>,
+        ) -> Counters {
+            ask_lanes::<_, $form, $test>(tree, isa, put, ray, Wanted::All, |ray, ask| {
+                (<$form as FormKernels<$scalar>>::ASKED.open)(tree, isa, ray, ask, ahead);
+            })
+            .1
+        }
+        #[inline(never)]
+        fn counted(
+            tree: &Tree,
+            isa: Backend,
+            put: Put<'_>,
+            ray: &Ray<$scalar>,
+            is_closest: IsClosest,
+        ) -> (Found<$scalar>, Counters) {
+            const KERNELS: AskKernels<$scalar, Tree, Reference> = <$form as FormKernels<$scalar>>::ASKED;
+            let (wanted, kernel) =
+                if is_closest { (Wanted::Closest, KERNELS.closest) } else { (Wanted::Any, KERNELS.any) };
+            ask_lanes::<_, $form, $test>(tree, isa, put, ray, wanted, |ray, ask| kernel(tree, isa, ray, ask))
+        }
+        LaneKernels { closest, any, open, counted }
+    }};
+}
+
+/// Kernels whose closest and any hits have the leaf's test inlined, for a scalar, a form and a test.
+macro_rules! inlined {
+    ($scalar:ty, $form:ty, $test:ty) => {{
+        type Tree = Wide<$scalar, $form>;
+        type Put<'a> = &'a dyn PutOperands<$scalar>;
+        const LATE: LaneKernels<$scalar, $form> = late!($scalar, $form, $test);
+
+        #[inline(never)]
+        fn closest(
+            tree: &Tree,
+            isa: Backend,
+            put: Put<'_>,
+            rays: &[Ray<$scalar>],
+            found: &mut [Found<$scalar>],
+        ) {
+            let kernel = Closest { tree, rays, found, test: PhantomData::<$test> };
+            if let Err(Closest { found, .. }) = isa.run_large(kernel) {
+                (LATE.closest)(tree, isa, put, rays, found);
+            }
+        }
+        #[inline(never)]
+        fn any(tree: &Tree, isa: Backend, put: Put<'_>, rays: &[Ray<$scalar>], found: &mut [bool]) {
+            let kernel = AnyHit { tree, rays, found, test: PhantomData::<$test> };
+            if let Err(AnyHit { found, .. }) = isa.run_large(kernel) {
+                (LATE.any)(tree, isa, put, rays, found);
+            }
+        }
+        LaneKernels { closest, any, ..LATE }
+    }};
+}
+
+/// Kernels for a scalar and a form that ask.
+macro_rules! asked {
+    ($scalar:ty, $form:ty) => {{
+        type Tree = Wide<$scalar, $form>;
+        type Asks<'a> = &'a mut dyn Ask<$scalar>;
+
+        #[inline(never)]
+        fn closest(tree: &Tree, isa: Backend, ray: &mut AskedRay<$scalar>, ask: Asks<'_>) {
+            isa.run(AskWide::<_, _, true> { tree, ray, ask });
+        }
+        #[inline(never)]
+        fn any(tree: &Tree, isa: Backend, ray: &mut AskedRay<$scalar>, ask: Asks<'_>) {
+            isa.run(AskWide::<_, _, false> { tree, ray, ask });
+        }
+        #[inline(never)]
+        fn open(
+            tree: &Tree,
+            isa: Backend,
+            ray: &mut AskedRay<$scalar>,
+            ask: Asks<'_>,
+            ahead: &mut BestFirst<$scalar, Reference>,
+        ) {
+            isa.run(OpenWide { tree, ray, ask, ahead });
+        }
+        AskKernels { closest, any, open }
+    }};
+}
+
+/// Kernels for a scalar's binary tree: two boxes at a time, with the instructions that every processor has.
+macro_rules! binary {
+    ($scalar:ty) => {{
+        type T = Tree<$scalar>;
+        type Asks<'a> = &'a mut dyn Ask<$scalar>;
+
+        #[inline(never)]
+        fn closest(tree: &T, _: Backend, ray: &mut AskedRay<$scalar>, ask: Asks<'_>) {
+            if ray.ray.is_valid() {
+                ray.steps.rays += 1;
+                let _ = binary::traverse(tree, ray, ask);
+            }
+        }
+        #[inline(never)]
+        fn open(
+            tree: &T,
+            _: Backend,
+            ray: &mut AskedRay<$scalar>,
+            ask: Asks<'_>,
+            ahead: &mut BestFirst<$scalar, Child>,
+        ) {
+            binary::open(tree, ahead, ray, ask);
+        }
+        // Nearer children first, whatever is asked.
+        AskKernels { closest, any: closest, open }
+    }};
+}
+
+impl ScalarKernels for f32 {
+    const PACKED: [LaneKernels<Self, Packed>; 4] = [
+        inlined!(f32, Packed, FastLeaf),
+        inlined!(f32, Packed, WatertightLeaf),
+        late!(f32, Packed, PreciseLeaf),
+        inlined!(f32, Packed, SphereLeaf),
+    ];
+    const COMPACT: [LaneKernels<Self, Compact>; 4] = [
+        late!(f32, Compact, FastLeaf),
+        late!(f32, Compact, WatertightLeaf),
+        late!(f32, Compact, PreciseLeaf),
+        late!(f32, Compact, SphereLeaf),
+    ];
+    const PACKED_ASKED: AskKernels<Self, Wide<Self, Packed>, Reference> = asked!(f32, Packed);
+    const COMPACT_ASKED: AskKernels<Self, Wide<Self, Compact>, Reference> = asked!(f32, Compact);
+    const BINARY: AskKernels<Self, Tree, Child> = binary!(f32);
+}
+
+/// `f64` has no `Precise` triangles: in their place are the watertight ones.
+impl ScalarKernels for f64 {
+    const PACKED: [LaneKernels<Self, Packed>; 4] = {
+        const WATERTIGHT: LaneKernels<f64, Packed> = inlined!(f64, Packed, WatertightLeaf);
+        [inlined!(f64, Packed, FastLeaf), WATERTIGHT, WATERTIGHT, late!(f64, Packed, SphereLeaf)]
+    };
+    const COMPACT: [LaneKernels<Self, Compact>; 4] = {
+        const WATERTIGHT: LaneKernels<f64, Compact> = late!(f64, Compact, WatertightLeaf);
+        [late!(f64, Compact, FastLeaf), WATERTIGHT, WATERTIGHT, late!(f64, Compact, SphereLeaf)]
+    };
+    const PACKED_ASKED: AskKernels<Self, Wide<Self, Packed>, Reference> = asked!(f64, Packed);
+    const COMPACT_ASKED: AskKernels<Self, Wide<Self, Compact>, Reference> = asked!(f64, Compact);
+    const BINARY: AskKernels<Self, Tree<f64>, Child> = binary!(f64);
+}

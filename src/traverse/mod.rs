@@ -1,0 +1,29 @@
+//! The kernels: one loop for each layout, compiled in this crate for each kind of leaf, scalar and instruction set, and for no
+//! type of primitive.
+//!
+//! ```text
+//! query --> kernel: nodes by box_test and child_order, deferred ones on the traversal_stack
+//!             at a leaf, a visitor:
+//!               settled in lanes   the leaf's own test (leaf::LaneTest)
+//!               asked              one late-bound call for all of the leaf's primitives (seam::Ask)
+//! query <-- t, index, and the details that the payload is made of
+//! ```
+
+mod ask_lanes;
+mod best_first;
+mod binary;
+mod binary_stack;
+mod box_test;
+mod child_order;
+mod kernels;
+mod recorder;
+mod seam;
+mod traversal_stack;
+mod visitor;
+mod wide;
+
+pub(crate) use best_first::{BestFirst, Details, QueuedHit};
+pub use kernels::{FormKernels, ScalarKernels};
+pub use recorder::{Counters, Recorder};
+pub(crate) use seam::{Ask, AskedLeaf, AskedRay};
+pub(crate) use visitor::Found;

@@ -1,0 +1,246 @@
+//! What a query does at a leaf of a wide tree.
+
+use super::child_order::next_lane;
+use super::seam::{Ask, AskedLeaf, AskedRay};
+use crate::geometry::{Ray, Scalar, Slabs};
+use crate::layout::{Form, NOBODY, Reference, WideTree};
+use crate::leaf::{GATHERED, LEAF_WIDTH, LaneHits, LaneTest, Operands};
+use crate::primitive::precedes;
+use crate::simd::{Count, Isa, Lanes, Width};
+use core::ops::ControlFlow;
+
+/// A query, as the wide loop sees it.
+pub(super) trait Visitor<S: Scalar> {
+    /// Whether nearer boxes should come first.
+    const IN_ORDER: bool;
+
+    /// What begins beyond this t is of no interest any more.
+    fn limit(&self) -> S;
+
+    /// A node is visited.
+    #[inline(always)]
+    fn node(&mut self) {}
+
+    /// Tests the primitives of a leaf whose box the ray enters before the limit. Breaks if nothing more needs to be visited.
+    ///
+    /// # Safety
+    /// `leaf` is one of the tree's leaves.
+    unsafe fn leaf<I: Isa, F: Form<S, N>, const N: usize>(
+        &mut self,
+        isa: I,
+        tree: &WideTree<S, N, F>,
+        leaf: Reference,
+        ray: &Ray<S>,
+    ) -> ControlFlow<()>
+    where
+        Count<N>: Width;
+}
+
+/// What is wanted of the hits.
+pub(super) trait Query<S: Scalar>: Copy {
+    const IN_ORDER: bool;
+
+    fn limit(&self) -> S;
+
+    /// A hit up to the limit.
+    fn hit(&mut self, t: S, index: u32, details: impl FnOnce() -> [S; 3]) -> ControlFlow<()>;
+}
+
+/// The closest hit.
+#[derive(Clone, Copy)]
+pub struct Found<S> {
+    /// The end of the ray's interval if there is none.
+    pub t: S,
+    /// [`NOBODY`] if there is none.
+    pub index: u32,
+    /// What the payload is made of.
+    pub details: [S; 3],
+}
+
+impl<S: Scalar> Found<S> {
+    #[inline(always)]
+    pub fn none(t_max: S) -> Self {
+        Self { t: t_max, index: NOBODY, details: [S::ZERO; 3] }
+    }
+}
+
+impl<S: Scalar> Query<S> for Found<S> {
+    const IN_ORDER: bool = true;
+
+    #[inline(always)]
+    fn limit(&self) -> S {
+        self.t
+    }
+
+    #[inline(always)]
+    fn hit(&mut self, t: S, index: u32, details: impl FnOnce() -> [S; 3]) -> ControlFlow<()> {
+        if precedes(t, index, self.t, self.index) {
+            *self = Self { t, index, details: details() };
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// Any hit.
+#[derive(Clone, Copy)]
+pub(super) struct Any<S> {
+    pub t_max: S,
+    pub is_hit: bool,
+}
+
+impl<S: Scalar> Query<S> for Any<S> {
+    const IN_ORDER: bool = false;
+
+    #[inline(always)]
+    fn limit(&self) -> S {
+        self.t_max
+    }
+
+    #[inline(always)]
+    fn hit(&mut self, _: S, _: u32, _: impl FnOnce() -> [S; 3]) -> ControlFlow<()> {
+        self.is_hit = true;
+        ControlFlow::Break(())
+    }
+}
+
+/// Leaves that have operands which say all of their primitives.
+pub(super) struct InLanes<S: Scalar, T: LaneTest<S>, Q> {
+    pub query: Q,
+    /// Of the ray, once there has been a leaf.
+    frame: Option<T::Frame>,
+    /// Lanes may be tested.
+    suits: bool,
+}
+
+impl<S: Scalar, T: LaneTest<S>, Q: Query<S>> InLanes<S, T, Q> {
+    #[inline(always)]
+    pub fn new(query: Q, suits: bool) -> Self {
+        Self { query, frame: None, suits }
+    }
+}
+
+impl<S: Scalar, T: LaneTest<S>, Q: Query<S>> Visitor<S> for InLanes<S, T, Q> {
+    const IN_ORDER: bool = Q::IN_ORDER;
+
+    #[inline(always)]
+    fn limit(&self) -> S {
+        self.query.limit()
+    }
+
+    #[inline(always)]
+    unsafe fn leaf<I: Isa, F: Form<S, N>, const N: usize>(
+        &mut self,
+        isa: I,
+        tree: &WideTree<S, N, F>,
+        leaf: Reference,
+        ray: &Ray<S>,
+    ) -> ControlFlow<()>
+    where
+        Count<N>: Width,
+    {
+        // SAFETY: one of the tree's leaves, by the caller's word, and the kernel's entry has compared operands.
+        let indices = unsafe { F::indices(tree, leaf, T::OPERANDS) };
+        // SAFETY: as above.
+        let rows = unsafe { F::rows(tree, leaf, T::OPERANDS) };
+        let undecided = if self.suits {
+            let frame = self.frame.get_or_insert_with(
+                #[inline(always)]
+                || T::frame(ray),
+            );
+            let operands = Operands::<_, <Count<N> as Width>::Leaf<S, I>>::new(isa, rows);
+            let hits = T::test(&operands, ray, frame, self.query.limit());
+            self.settled(&hits, indices)?;
+            hits.undecided
+        } else {
+            let lanes = indices.iter().enumerate().rev();
+            lanes.fold(0, |all, (lane, &index)| all << 1 | u32::from(F::has(leaf, lane, index)))
+        };
+        if undecided == 0 {
+            return ControlFlow::Continue(());
+        }
+        let flow;
+        (self.query, flow) = decide::<S, T, Q>(self.query, undecided, indices, rows, ray);
+        flow
+    }
+}
+
+impl<S: Scalar, T: LaneTest<S>, Q: Query<S>> InLanes<S, T, Q> {
+    #[inline(always)]
+    fn settled<L: Lanes<S>>(&mut self, hits: &LaneHits<L>, indices: &[u32; LEAF_WIDTH]) -> ControlFlow<()> {
+        let mut lanes = hits.settled;
+        while lanes != 0 {
+            let lane = next_lane(&mut lanes) % LEAF_WIDTH;
+            let [a, b, c] = hits.details;
+            let details = || [a.lane(lane), b.lane(lane), c.lane(lane)];
+            self.query.hit(hits.t.lane(lane), indices[lane], details)?;
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// Tests some lanes by themselves, with a copy of the query: a reference to it would keep it in memory on every other way.
+#[cold]
+#[inline(never)]
+fn decide<S: Scalar, T: LaneTest<S>, Q: Query<S>>(
+    mut query: Q,
+    mut lanes: u32,
+    indices: &[u32; LEAF_WIDTH],
+    rows: &[[S; LEAF_WIDTH]],
+    ray: &Ray<S>,
+) -> (Q, ControlFlow<()>) {
+    let slabs = Slabs::new(ray);
+    while lanes != 0 {
+        let lane = next_lane(&mut lanes) % LEAF_WIDTH;
+        let mut operands = [S::ZERO; GATHERED];
+        for (operand, row) in operands.iter_mut().zip(rows) {
+            *operand = row[lane];
+        }
+        let ray = ray.with_interval(ray.t_min, query.limit());
+        if let Some((t, details)) = T::one(&operands, &ray, &slabs)
+            && query.hit(t, indices[lane], || details).is_break()
+        {
+            return (query, ControlFlow::Break(()));
+        }
+    }
+    (query, ControlFlow::Continue(()))
+}
+
+/// Leaves whose primitives are asked.
+pub(super) struct Asked<'q, S: Scalar, const IN_ORDER: bool> {
+    pub ask: &'q mut dyn Ask<S>,
+    pub ray: &'q mut AskedRay<S>,
+}
+
+impl<S: Scalar, const IN_ORDER: bool> Visitor<S> for Asked<'_, S, IN_ORDER> {
+    const IN_ORDER: bool = IN_ORDER;
+
+    #[inline(always)]
+    fn limit(&self) -> S {
+        self.ray.ray.t_max
+    }
+
+    #[inline(always)]
+    fn node(&mut self) {
+        self.ray.steps.nodes += 1;
+    }
+
+    #[inline(always)]
+    unsafe fn leaf<I: Isa, F: Form<S, N>, const N: usize>(
+        &mut self,
+        _: I,
+        tree: &WideTree<S, N, F>,
+        leaf: Reference,
+        _: &Ray<S>,
+    ) -> ControlFlow<()>
+    where
+        Count<N>: Width,
+    {
+        // SAFETY: one of the tree's leaves, by the caller's word.
+        let (indices, rows) =
+            unsafe { (F::indices(tree, leaf, tree.operands()), F::rows(tree, leaf, tree.operands())) };
+        let count =
+            indices.iter().enumerate().take_while(|&(lane, &index)| F::has(leaf, lane, index)).count();
+        self.ray.steps.leaves += 1;
+        self.ask.ask(AskedLeaf { indices: &indices[..count], rows }, self.ray)
+    }
+}
