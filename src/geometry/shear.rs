@@ -13,8 +13,7 @@ use super::{Axis, Ray, Scalar};
 pub(crate) struct Shear<S> {
     /// On the axes below.
     pub origin: [S; 3],
-    /// Which axes of space become the first, the second and the third. Of a type with three values: a compiler knows no other
-    /// bound of what it reads from memory.
+    /// Which axes of space become the first, the second and the third.
     pub axes: [Axis; 3],
     /// The direction on these axes, scaled by a power of two to about 1, so that products with it
     /// neither overflow nor underflow.

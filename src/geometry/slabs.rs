@@ -26,7 +26,7 @@ use super::{Aabb, Ray, Scalar, max, min};
 /// Every step is a monotone function of the plane's coordinate (a rounded difference, a rounded
 /// product with a constant of one sign, a maximum that leaves NaN out). Therefore **if box A
 /// contains box B then near(A) <= near(B) and far(A) >= far(B), in floating point, exactly.** The
-/// agreement of tree and naive loop rests on this (see `query::accept`).
+/// agreement of tree and naive loop rests on this (see `primitive::accept`).
 #[derive(Clone, Copy, Debug)]
 pub struct Slabs<S> {
     pub origin: [S; 3],

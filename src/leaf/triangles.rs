@@ -3,7 +3,7 @@
 
 use super::sealed::{Kernel, LeafKind};
 use super::{LaneHits, LaneTest, Operands, is_ahead_and_in_range};
-use crate::geometry::{Ray, Scalar, Shear, Slabs};
+use crate::geometry::{Axis, Ray, Scalar, Shear, Slabs};
 use crate::primitive::{Barycentrics, DOUBT, Fast, Triangle, Watertight, accept};
 use crate::simd::Lanes;
 use core::marker::PhantomData;
@@ -184,7 +184,9 @@ pub(super) struct EdgeTests<S: Scalar, L: Lanes<S>> {
 impl<S: Scalar, L: Lanes<S>> EdgeTests<S, L> {
     #[inline(always)]
     pub fn new(operands: &Operands<'_, S, L>, shear: &Shear<S>) -> Self {
-        let [i, j, k] = [shear.axes[0].index(), shear.axes[1].index(), shear.axes[2].index()];
+        // Bounded once: of what lies in memory a compiler knows no bound, and would compare each of nine rows with it.
+        let bounded = |axis: Axis| axis.index().min(2);
+        let (i, j, k) = (bounded(shear.axes[0]), bounded(shear.axes[1]), bounded(shear.axes[2]));
         let splat = |x: S| operands.splat(x);
         let [ox, oy, oz] = shear.origin;
         let (ox, oy, oz) = (splat(ox), splat(oy), splat(oz));

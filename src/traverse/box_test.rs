@@ -8,8 +8,8 @@
 //!
 //! Refused: t of ordinary rays as one fused product and sum, place * slope + start, with slopes and starts padded for what that
 //! loses (a difference less to wait for in each step, 25 operations more for each ray: with AVX-512 0.95 to 1.00 of the rate, with AVX2
-//! 1.00 to 1.03). And to prepare rays in four lanes of what is read as a whole: a nanosecond less, but 15 to 30 more where a ray is
-//! asked right after it was written (see `simd::read_each`).
+//! 1.00 to 1.03). And to read a ray's scalars several at once: a nanosecond less, but 15 to 30 more where a ray is
+//! asked right after it was written, for a load wider than a pending store waits for the cache.
 //!
 //! # As integers
 //!
