@@ -3,7 +3,7 @@
 
 use super::sealed::{Kernel, LeafKind};
 use super::{LaneHits, LaneTest, Operands, is_ahead_and_in_range};
-use crate::geometry::{Axis, Ray, Scalar, Shear, Slabs};
+use crate::geometry::{Ray, Scalar, Shear, Slabs};
 use crate::primitive::{Barycentrics, DOUBT, Fast, Triangle, Watertight, accept};
 use crate::simd::Lanes;
 use core::marker::PhantomData;
@@ -118,7 +118,7 @@ impl<S: Scalar> RayFrame<S> {
     #[inline(always)]
     pub fn of(ray: &Ray<S>) -> Self {
         let (shear, Slabs { inv_near, inv_far, .. }) = (Shear::of(ray), Slabs::new(ray));
-        let [i, j, k] = [shear.axes[0].index(), shear.axes[1].index(), shear.axes[2].index()];
+        let [i, j, k] = shear.axes;
         let inv_near = [inv_near[i], inv_near[j], inv_near[k]];
         Self { shear, inv_near, inv_far: [inv_far[i], inv_far[j], inv_far[k]] }
     }
@@ -185,8 +185,8 @@ impl<S: Scalar, L: Lanes<S>> EdgeTests<S, L> {
     #[inline(always)]
     pub fn new(operands: &Operands<'_, S, L>, shear: &Shear<S>) -> Self {
         // Bounded once: of what lies in memory a compiler knows no bound, and would compare each of nine rows with it.
-        let bounded = |axis: Axis| axis.index().min(2);
-        let (i, j, k) = (bounded(shear.axes[0]), bounded(shear.axes[1]), bounded(shear.axes[2]));
+        let [i, j, k] = shear.axes;
+        let (i, j, k) = (i.min(2), j.min(2), k.min(2));
         let splat = |x: S| operands.splat(x);
         let [ox, oy, oz] = shear.origin;
         let (ox, oy, oz) = (splat(ox), splat(oy), splat(oz));

@@ -20,7 +20,7 @@ pub enum InstructionSet {
     Baseline,
     /// AVX2: x86-64-v3.
     Avx2,
-    /// AVX-512 with its parts F, BW, CD, DQ and VL: x86-64-v4.
+    /// AVX-512, as since Ice Lake and Zen 4.
     Avx512,
 }
 

@@ -15,7 +15,9 @@ impl Avx512 {
     #[inline]
     pub fn detect() -> Option<Self> {
         let has = super::Avx2::detect().is_some()
-            && has!("avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl");
+            && has!("avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl")
+            // What came later: before Ice Lake, processors that used 512 bits slowed down for it.
+            && has!("avx512vbmi", "avx512vbmi2", "avx512vnni", "avx512bitalg", "avx512vpopcntdq");
         has.then_some(Self(()))
     }
 }
