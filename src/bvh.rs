@@ -248,6 +248,9 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
         ray: &Ray<P::Scalar>,
         recorder: &mut impl Recorder,
     ) -> Option<Hit<P::Scalar, P::Payload>> {
+        if !recorder.records() {
+            return self.closest_hit(ray);
+        }
         let (hit, steps) = self.layout.counted_closest_hit(self.backend, &self.primitives, ray);
         steps.tell(recorder);
         hit
@@ -263,6 +266,9 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
     /// As [`any_hit`](Self::any_hit), telling `recorder` of each step.
     #[inline]
     pub fn any_hit_with(&self, ray: &Ray<P::Scalar>, recorder: &mut impl Recorder) -> bool {
+        if !recorder.records() {
+            return self.any_hit(ray);
+        }
         let (is_hit, steps) = self.layout.counted_any_hit(self.backend, &self.primitives, ray);
         steps.tell(recorder);
         is_hit

@@ -36,7 +36,7 @@ struct Extent {
 
 const BENCH: Extent = Extent { size: 100_000, rays: 1 << 14, naive_tests: 100_000_000, repetitions: 5 };
 
-/// Just enough to see that everything runs; more rays than a chunk of a batch, to have some of them trace in turns.
+/// Just enough to see that everything runs; more rays than a chunk of a batch.
 const TEST: Extent = Extent { size: 300, rays: 1100, naive_tests: 2_000_000, repetitions: 1 };
 
 fn main() -> anyhow::Result<()> {

@@ -1,6 +1,6 @@
 //! A flat convex polygon, cut down by boxes.
 
-use super::{Aabb, cross, dot};
+use super::{Aabb, Scalar, cross, dot};
 use alloc::vec::Vec;
 use core::mem::swap;
 
@@ -80,7 +80,7 @@ impl Polygon {
             let [dx, dy, dz] = cross(edge(&pair[0]), edge(&pair[1]));
             [x + dx, y + dy, z + dz]
         });
-        0.5 * dot(normal, normal).sqrt()
+        0.5 * Scalar::sqrt(dot(normal, normal))
     }
 }
 

@@ -36,7 +36,7 @@ pub(crate) const WIDTH: usize = 16;
 /// built.
 ///
 /// A type parameter of [`Bvh`](crate::Bvh), chosen by [`Builder::layout`](crate::Builder::layout). What is not chosen
-/// is not compiled. Answers are the same bits in all.
+/// is not linked. Answers are the same bits in all.
 pub trait Layout<P: Primitive>: Outline<P::Scalar> + Send + Sized {
     /// How many primitives a leaf tests at once.
     #[doc(hidden)]
@@ -227,5 +227,31 @@ impl<P: Intersect> Contents<P::Scalar> for &[P] {
     fn prefetch(&self, index: u32) {
         let primitive = self.as_ptr().wrapping_add(index as usize).cast();
         prefetch(primitive, size_of::<P>().min(128));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Bvh, Sphere};
+
+    /// Every place that a reference can tell of, and the ends of the range, opened in small trees: nothing beyond their memory is read.
+    #[test]
+    fn any_place_can_be_opened_in_any_tree() {
+        fn open<L: Layout<Sphere> + Outline<f32, Place = Reference>>(count: u8) {
+            let spheres = (0..count).map(|i| Sphere::new([f32::from(i), 0.0, 0.0], 0.3));
+            let bvh = Bvh::builder().layout::<L>().build(spheres.collect::<alloc::vec::Vec<_>>()).unwrap();
+            let (mut opened, end) = (0, u32::MAX as usize * 8);
+            for offset in (0..1 << 14).step_by(8).chain((end - (1 << 12)..=end).step_by(8)) {
+                for place in [Reference::node(offset), Reference::leaf(offset)] {
+                    opened += usize::from(bvh.layout().open(place, |_| ()));
+                }
+            }
+            assert!(count == 0 || opened > 0);
+        }
+        for count in [0, 1, 100] {
+            open::<WideTree>(count);
+            open::<CompactTree>(count);
+        }
     }
 }

@@ -125,8 +125,9 @@ impl<S: Scalar, const N: usize> Form<S, N> for Packed {
     }
 
     fn indices_at(tree: &WideTree<S, N>, leaf: Reference) -> Option<&[u32; LEAF_WIDTH]> {
-        let offset = leaf.offset() + tree.form.operands * size_of::<[S; LEAF_WIDTH]>();
-        let fits = offset + size_of::<[u32; LEAF_WIDTH]>() <= tree.blocks.len();
+        let rows = tree.form.operands.checked_mul(size_of::<[S; LEAF_WIDTH]>())?;
+        let offset = leaf.offset().checked_add(rows)?;
+        let fits = offset.checked_add(size_of::<[u32; LEAF_WIDTH]>())? <= tree.blocks.len();
         // SAFETY: indices are any bytes, and these lie inside of the blocks, at a multiple of eight.
         fits.then(|| unsafe { tree.blocks.get(offset) })
     }

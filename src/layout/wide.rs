@@ -41,11 +41,11 @@ impl Reference {
     /// None yet.
     pub(super) const NONE: Self = Self(0);
 
-    pub fn node(offset: usize) -> Self {
+    pub(crate) fn node(offset: usize) -> Self {
         Self((offset / Blocks::UNIT) as u32)
     }
 
-    pub fn leaf(offset: usize) -> Self {
+    pub(crate) fn leaf(offset: usize) -> Self {
         Self((offset / Blocks::UNIT) as u32 | Self::LEAF)
     }
 
@@ -81,8 +81,8 @@ impl Reference {
     }
 }
 
-/// The layout for speed: a tree of nodes with up to `N` children, 4, 8 or 16, whose boxes are tested all at once, and of
-/// leaves of up to 8 primitives, side by side if their type has a [`Leaf`](crate::Leaf) of its own.
+/// The layout for speed: a tree of nodes with up to 16 children, whose boxes are tested all at once, and of leaves of up to 8
+/// primitives, side by side if operands of them lie there. 16 is the only `N` that can be built and traced.
 ///
 /// At most 16 GiB. On 279,163 triangles of sponza it takes 61 bytes a triangle.
 ///
@@ -168,7 +168,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
         self.blocks.len() > LARGE
     }
 
-    /// See [`Leaf::suits`](crate::Leaf).
+    /// Whether all coordinates are below `Scalar::LARGE_AREA`: then lanes may be tested.
     #[inline(always)]
     pub(crate) fn is_ordinary(&self) -> bool {
         self.is_ordinary
@@ -197,8 +197,8 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
     /// The node at any place; none if there is no room for one.
     pub(super) fn node_at(&self, reference: Reference) -> Option<&F::Node> {
         let offset = reference.offset();
-        let fits =
-            offset + size_of::<F::Node>() <= self.blocks.len() && offset.is_multiple_of(F::Node::ALIGN);
+        let fits = offset.checked_add(size_of::<F::Node>())? <= self.blocks.len()
+            && offset.is_multiple_of(F::Node::ALIGN);
         // SAFETY: nodes are any bytes, and these lie inside of the blocks, aligned, as was just asked.
         fits.then(|| unsafe { self.blocks.get(offset) })
     }

@@ -20,6 +20,10 @@ impl<S: Scalar, T> LeafKind<S, T> for OneByOne {
 /// Which scalars of a primitive it needs, [`Intersect::put_operands`](crate::Intersect::put_operands) writes; which lanes a ray
 /// may hit, [`candidates`](Self::candidates) says. Those are asked one by one, so that answers are the same with and without
 /// a sieve. `examples/own_leaf.rs` is a whole program.
+///
+/// It is for speed alone, and all primitives are asked where it cannot be had: in the binary [`Tree`](crate::Tree), in a
+/// [`CompactTree`](crate::CompactTree) if there are more than 16 operands, and where coordinates are beyond 1e18 (`f32`). It is
+/// asked about rays of any interval, with a `t_min` below 0 too.
 pub trait Sieve<S: Scalar>: 'static {
     /// How many scalars of each primitive lie in the leaf.
     const OPERANDS: usize;

@@ -8,11 +8,13 @@ use crate::primitive::{Barycentrics, DOUBT, Fast, Triangle, Watertight, accept};
 use crate::simd::Lanes;
 use core::marker::PhantomData;
 
-/// The leaf of [`Fast`] triangles: nine coordinates each.
+/// The leaf of [`Fast`] triangles: nine coordinates each, which are all that the test needs. For a type whose `intersect` and
+/// box are those of [`Fast`]: in wide trees neither is called.
 #[derive(Clone, Copy, Debug)]
 pub struct FastLeaf;
 
-/// The leaf of [`Watertight`] triangles: nine coordinates each.
+/// The leaf of [`Watertight`] triangles: nine coordinates each, which are all that the test needs. For a type whose `intersect`
+/// and box are those of [`Watertight`]: in wide trees neither is called.
 #[derive(Clone, Copy, Debug)]
 pub struct WatertightLeaf;
 

@@ -91,7 +91,8 @@ pub trait Intersect: Primitive {
     type Payload: Copy;
 
     /// How primitives of this type lie in the leaves of the wide layouts, and how they are tested there:
-    /// [`OneByOne`](crate::OneByOne), or [`Sieved`](crate::Sieved) by a test in lanes.
+    /// [`OneByOne`](crate::OneByOne), or [`Sieved`](crate::Sieved) by a test in lanes. The leaves of triangles and spheres are for
+    /// types that forward to those: [`intersect`](Self::intersect) is not called there, operands say all.
     type Leaf: Leaf<Self::Scalar, Self::Payload>;
 
     /// Returns the ray's first hit with this primitive at a t in [`ray.t_min`, `ray.t_max`], and its payload.

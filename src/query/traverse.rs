@@ -148,7 +148,7 @@ impl<P: Intersect, F: FormKernels<P::Scalar>> Traverse<P> for WideTree<P::Scalar
             let mut found = none::<P::Scalar, CHUNK>();
             for (rays, hits) in rays.chunks(CHUNK).zip(hits.chunks_mut(CHUNK)) {
                 in_lanes!(P, F, closest)(self, backend, &Primitives(primitives), rays, &mut found);
-                for (hit, found) in hits.iter_mut().zip(&found) {
+                for (hit, found) in hits.iter_mut().zip(&found[..rays.len()]) {
                     *hit = hit_of::<P>(*found);
                 }
             }

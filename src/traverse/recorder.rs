@@ -2,7 +2,9 @@
 
 use core::ops::AddAssign;
 
-/// Is told of each step of a query, once the query is done. `()` records nothing and costs nothing.
+/// Is told of each step of a query: once the query is done (all hits: each time that the next is known), all nodes, then all
+/// leaves, then all primitives. `()` records nothing and costs nothing; a query that is recorded takes a slower way to the same
+/// answer.
 pub trait Recorder {
     /// A valid ray sets out.
     #[inline(always)]

@@ -159,7 +159,7 @@ fn equal_triangles<M: Mode>(compare: Compare<M>) {
     compared.tell();
 }
 
-/// More than it takes for rays to be traced in turns, invalid ones among them.
+/// Many times what is answered at a time, invalid rays among them.
 fn lists_of_rays<M: Mode>() {
     fn assert_same<'a, M: Mode, L: Traverse<&'a M>>(
         builder: Builder<&'a M, Quality, L>,
@@ -196,7 +196,7 @@ fn lists_of_rays<M: Mode>() {
     }
 }
 
-/// Longer than it takes for the quicker way to be asked for a third time.
+/// Much longer than what is answered at a time.
 #[test]
 fn a_long_list_of_rays() {
     let mut rng = Pcg64Mcg::seed_from_u64(11);

@@ -144,3 +144,32 @@ fn places_of_another_tree_are_no_way_out_of_a_trees_memory() {
     both::<CompactTree>(|n| spheres(n).collect());
     both::<Tree>(|n| spheres(n).collect());
 }
+
+/// Fewer rays than places, and fewer places than rays, by what is answered at a time and more.
+fn lists<P: Intersect<Scalar = f32, Payload: PartialEq + std::fmt::Debug>, L: Traverse<P>>(bvh: &Bvh<P, L>) {
+    let rays: Vec<Ray> = (0..200u8).map(|i| Ray::new([f32::from(i), -9.0, 0.0], [0.0, 1.0, 0.0])).collect();
+    for (count, places) in [(10, 20), (74, 128), (128, 74), (64, 65), (0, 3), (200, 200)] {
+        let sentinel = bvh.closest_hit(&rays[7]);
+        assert!(sentinel.is_some());
+        let (mut closest, mut any) = (vec![sentinel; places], vec![true; places]);
+        bvh.closest_hits(&rays[..count], &mut closest);
+        bvh.any_hits(&rays[..count], &mut any);
+        for place in 0..places {
+            let expected = if place < count { bvh.closest_hit(&rays[place]) } else { sentinel };
+            assert_eq!(closest[place], expected, "{count} {places} {place}");
+            assert_eq!(any[place], expected.is_some());
+        }
+    }
+}
+
+#[test]
+fn lists_of_other_lengths_leave_the_rest_alone() {
+    // Some rays miss.
+    let spheres: Vec<Sphere> =
+        (0..40u8).map(|i| Sphere::new([f32::from(5 * i + 2), 0.0, 0.0], 1.0)).collect();
+    lists(&Bvh::build(&spheres).unwrap());
+    lists(&Bvh::builder().layout::<CompactTree>().build(&spheres).unwrap());
+    lists(&Bvh::builder().layout::<Tree>().build(&spheres).unwrap());
+    let ends = Mutex::new(Vec::new());
+    lists(&Bvh::build(spheres.iter().map(|&sphere| Watched(sphere, &ends))).unwrap());
+}

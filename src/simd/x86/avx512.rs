@@ -14,10 +14,19 @@ pub struct Avx512(());
 impl Avx512 {
     #[inline]
     pub fn detect() -> Option<Self> {
-        let has = super::Avx2::detect().is_some()
-            && has!("avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl")
-            // What came later: before Ice Lake, processors that used 512 bits slowed down for it.
-            && has!("avx512vbmi", "avx512vbmi2", "avx512vnni", "avx512bitalg", "avx512vpopcntdq");
+        // The last five came later: before Ice Lake, processors that used 512 bits slowed down for it.
+        let has = has!(
+            "avx512f",
+            "avx512bw",
+            "avx512cd",
+            "avx512dq",
+            "avx512vl",
+            "avx512vbmi",
+            "avx512vbmi2",
+            "avx512vnni",
+            "avx512bitalg",
+            "avx512vpopcntdq"
+        ) && super::Avx2::detect().is_some();
         has.then_some(Self(()))
     }
 }

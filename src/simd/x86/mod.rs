@@ -17,7 +17,7 @@ pub use sse2::Sse2;
 
 /// Whether the processor has all of these; without `std`, whether the build's target has.
 macro_rules! has {
-    ($($feature:tt),*) => {{
+    ($($feature:tt),* $(,)?) => {{
         #[cfg(feature = "std")]
         let has = $(std::is_x86_feature_detected!($feature))&&*;
         #[cfg(not(feature = "std"))]
