@@ -105,6 +105,15 @@ pub(crate) trait LaneTest<S: Scalar>: 'static {
     fn one(operands: &[S], ray: &Ray<S>, slabs: &Slabs<S>) -> Option<(S, [S; 3])>;
 }
 
+/// The operands of one lane, and zeros behind them.
+pub(crate) fn operands_of<S: Scalar>(rows: &[[S; LEAF_WIDTH]], lane: usize) -> [S; GATHERED] {
+    let mut operands = [S::ZERO; GATHERED];
+    for (operand, row) in operands.iter_mut().zip(rows) {
+        *operand = row[lane];
+    }
+    operands
+}
+
 /// What was found in a leaf's lanes.
 #[derive(Clone, Copy)]
 pub(crate) struct LaneHits<L> {

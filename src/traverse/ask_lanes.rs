@@ -6,7 +6,7 @@ use super::best_first::{Details, QueuedHit};
 use super::child_order::next_lane;
 use super::seam::{Ask, AskedLeaf, AskedRay};
 use crate::geometry::Scalar;
-use crate::leaf::{GATHERED, LEAF_WIDTH, LaneTest, PutOperands, StoredHits, TestLanes};
+use crate::leaf::{GATHERED, LEAF_WIDTH, LaneTest, PutOperands, StoredHits, TestLanes, operands_of};
 use crate::simd::Backend;
 use core::marker::PhantomData;
 use core::ops::ControlFlow;
@@ -79,11 +79,7 @@ impl<S: Scalar, T: LaneTest<S>> Ask<S> for AskLanes<'_, S, T> {
         }
         while undecided != 0 {
             let lane = next_lane(&mut undecided) % LEAF_WIDTH;
-            let mut operands = [S::ZERO; GATHERED];
-            for (operand, row) in operands.iter_mut().zip(rows) {
-                *operand = row[lane];
-            }
-            if let Some((t, details)) = T::one(&operands, &ray.ray, &ray.slabs) {
+            if let Some((t, details)) = T::one(&operands_of(rows, lane), &ray.ray, &ray.slabs) {
                 self.hit(t, indices[lane], details, ray)?;
             }
         }

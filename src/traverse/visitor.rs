@@ -4,7 +4,7 @@ use super::child_order::next_lane;
 use super::seam::{Ask, AskedLeaf, AskedRay};
 use crate::geometry::{Ray, Scalar, Slabs};
 use crate::layout::{Form, NOBODY, Reference, WideTree};
-use crate::leaf::{GATHERED, LEAF_WIDTH, LaneHits, LaneTest, Operands};
+use crate::leaf::{LEAF_WIDTH, LaneHits, LaneTest, Operands, operands_of};
 use crate::primitive::precedes;
 use crate::simd::{Count, Isa, Lanes, Width};
 use core::ops::ControlFlow;
@@ -191,12 +191,8 @@ fn decide<S: Scalar, T: LaneTest<S>, Q: Query<S>>(
     let slabs = Slabs::new(ray);
     while lanes != 0 {
         let lane = next_lane(&mut lanes) % LEAF_WIDTH;
-        let mut operands = [S::ZERO; GATHERED];
-        for (operand, row) in operands.iter_mut().zip(rows) {
-            *operand = row[lane];
-        }
         let ray = ray.with_interval(ray.t_min, query.limit());
-        if let Some((t, details)) = T::one(&operands, &ray, &slabs)
+        if let Some((t, details)) = T::one(&operands_of(rows, lane), &ray, &slabs)
             && query.hit(t, indices[lane], || details).is_break()
         {
             return (query, ControlFlow::Break(()));
