@@ -1,6 +1,7 @@
 //! A hierarchy as a primitive: many copies of one mesh, each a place.
 
 use bvhkit::{Aabb, Bvh, Intersect, OneByOne, Primitive, Ray, Triangle};
+use std::f32::consts::{PI, TAU};
 use std::time::Instant;
 
 /// A hierarchy, moved.
@@ -32,9 +33,17 @@ fn main() -> Result<(), bvhkit::BuildError> {
     // Numbers from 0 to 1.
     let part = |i: u32| (i.wrapping_mul(2_654_435_761) >> 8) as f32 / 16_777_216.0;
     let point = |i: u32| [part(3 * i), part(3 * i + 1), part(3 * i + 2)];
-    let mesh = Bvh::build((0..20_000).map(|i| {
-        let ([x, y, z], [dx, dy, dz]) = (point(3 * i), point(3 * i + 1));
-        Triangle::new([x, y, z], [x + 0.04 * dx, y + 0.04 * dy, z], [x, y + 0.04 * dy, z + 0.04 * dz])
+    // A bumpy sphere of 20,000 triangles.
+    const RINGS: u32 = 100;
+    let at = |ring: u32, sector: u32| {
+        let (u, v) = (ring as f32 / RINGS as f32 * PI, (sector % RINGS) as f32 / RINGS as f32 * TAU);
+        let radius = 0.4 + 0.05 * (7.0 * u).sin() * (5.0 * v).cos();
+        [radius * u.sin() * v.cos(), radius * u.sin() * v.sin(), radius * u.cos()]
+    };
+    let quads = (0..RINGS).flat_map(|ring| (0..RINGS).map(move |sector| (ring, sector)));
+    let mesh = Bvh::build(quads.flat_map(|(i, j)| {
+        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+        [Triangle::new(a, b, c), Triangle::new(a, c, d)]
     }))?;
     // They overlap: each ray meets the boxes of many.
     let copies = Bvh::build((0..500).map(|i| Copy { mesh: &mesh, place: point(100_000 + i) }))?;

@@ -81,7 +81,7 @@ pub trait ScalarLanes: Sized {
     type Times8<I: Isa>: Lanes<Self, Isa = I> + Halves<Self::Times4<I>>;
     type Times16<I: Isa>: Lanes<Self, Isa = I>;
     /// Eight, to compute with beside sixteen.
-    type Times8Of16<I: Isa>: Lanes<Self, Isa = I>;
+    type Times8Doubled<I: Isa>: Lanes<Self, Isa = I>;
 }
 
 /// What this crate does with scalars, and users do not.
@@ -126,7 +126,7 @@ pub(crate) fn max<S: Scalar>(a: S, b: S) -> S {
 
 macro_rules! scalar {
     (
-        $scalar:ident, $lanes4:ty, [$times4:ident, $times8:ident, $times16:ident, $times8_of_16:ident],
+        $scalar:ident, $lanes4:ty, [$times4:ident, $times8:ident, $times16:ident, $times8_doubled:ident],
         $bits:ident, $signed:ident, $libm_sqrt:ident, $libm_fma:ident, $large_area:expr, $large_volume:expr
     ) => {
         impl Scalar for $scalar {
@@ -200,7 +200,7 @@ macro_rules! scalar {
             type Times4<I: Isa> = I::$times4;
             type Times8<I: Isa> = I::$times8;
             type Times16<I: Isa> = I::$times16;
-            type Times8Of16<I: Isa> = I::$times8_of_16;
+            type Times8Doubled<I: Isa> = I::$times8_doubled;
         }
 
         impl ScalarParts for $scalar {
@@ -253,7 +253,7 @@ macro_rules! scalar {
 scalar!(
     f32,
     crate::simd::F32Lanes4,
-    [F32x4, F32x8, F32x16, F32x8Of16],
+    [F32x4, F32x8, F32x16, F32x8Doubled],
     u32,
     i32,
     sqrtf,

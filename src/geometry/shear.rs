@@ -1,6 +1,6 @@
 //! The frame of a ray: what a point looks like from behind the ray.
 
-use super::{Ray, Scalar};
+use super::{Axis, Ray, Scalar};
 
 /// The frame in which a ray starts at the origin and runs along the third axis: a shift, a permutation
 /// of the axes and a shear (Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, JCGT 2013).
@@ -14,7 +14,7 @@ pub(crate) struct Shear<S> {
     /// On the axes below.
     pub origin: [S; 3],
     /// Which axes of space become the first, the second and the third.
-    pub axes: [usize; 3],
+    pub axes: [Axis; 3],
     /// The direction on these axes, scaled by a power of two to about 1, so that products with it
     /// neither overflow nor underflow.
     pub direction: [S; 3],
@@ -23,7 +23,8 @@ pub(crate) struct Shear<S> {
 }
 
 /// The order of the axes that ends with each.
-const ORDERS: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+const ORDERS: [[Axis; 3]; 3] =
+    [[Axis::Y, Axis::Z, Axis::X], [Axis::Z, Axis::X, Axis::Y], [Axis::X, Axis::Y, Axis::Z]];
 
 impl<S: Scalar> Shear<S> {
     #[inline(always)]
@@ -45,7 +46,7 @@ impl<S: Scalar> Shear<S> {
         let (is_x, is_y) = ((x >= y) & (x >= z), y >= z);
         // The other two in either order: both sides of a triangle are hit.
         let axes = ORDERS[usize::from(!is_x) * (2 - usize::from(is_y))];
-        let [i, j, k] = axes;
+        let (i, j, k) = (axes[0].index(), axes[1].index(), axes[2].index());
         let forward = direction[k];
         let scale = forward.inverse_power_of_two();
         Self {
@@ -63,7 +64,7 @@ impl<S: Scalar> Shear<S> {
     #[inline(always)]
     pub fn apply(&self, [a, b, c]: [[S; 3]; 3]) -> [[S; 3]; 3] {
         let relative = |k: usize| {
-            let (axis, origin) = (self.axes[k], self.origin[k]);
+            let (axis, origin) = (self.axes[k].index(), self.origin[k]);
             [a[axis] - origin, b[axis] - origin, c[axis] - origin]
         };
         let (x, y, z) = (relative(0), relative(1), relative(2));

@@ -90,12 +90,11 @@ unsafe impl<S: Scalar, const N: usize> Node<S, N> for CompactNode<S, N> {
     }
 
     #[inline(always)]
-    fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, maxima_first: bool) -> [L; 2] {
+    fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, first: usize) -> [L; 2] {
         const { assert!(N == L::COUNT) }
         let rows = &self.places[axis];
         let (origin, scale) = (L::splat(isa, self.grid.origin[axis]), L::splat(isa, self.grid.scale[axis]));
-        let first = usize::from(maxima_first);
-        let (one, other) = (L::from_bytes(isa, &rows[first]), L::from_bytes(isa, &rows[1 - first]));
+        let (one, other) = (L::from_bytes(isa, &rows[first & 1]), L::from_bytes(isa, &rows[first & 1 ^ 1]));
         [origin + one * scale, origin + other * scale]
     }
 
@@ -189,7 +188,7 @@ mod tests {
         #[inline(always)]
         fn run<I: Isa>(self, isa: I) -> Self::Output {
             from_fn(|axis| {
-                let planes = self.0.planes::<<Count<N> as Width>::Lanes<S, I>>(isa, axis, false);
+                let planes = self.0.planes::<<Count<N> as Width>::Lanes<S, I>>(isa, axis, 0);
                 planes.map(|planes| {
                     let mut scalars = [S::ZERO; N];
                     planes.store(&mut scalars);

@@ -69,8 +69,8 @@ pub unsafe trait Node<S: Scalar, const N: usize>: Copy + Send + Sync {
     /// Bits of the lanes in which there may be children: no ray meets the boxes in others of them.
     fn lanes(&self) -> u32;
 
-    /// The two rows of planes across an axis, 0, 1 or 2: the minima before the maxima, or the other way round.
-    fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, maxima_first: bool) -> [L; 2];
+    /// The two rows of planes across an axis, 0, 1 or 2: the minima before the maxima if `first` is 0, after them if it is 1.
+    fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, first: usize) -> [L; 2];
 
     /// The box and the place of a child; none if there is none in this lane.
     fn child(&self, lane: usize) -> Option<(Aabb<S>, Reference)>;

@@ -69,11 +69,10 @@ unsafe impl<S: Scalar, const N: usize> Node<S, N> for WideNode<S, N> {
     }
 
     #[inline(always)]
-    fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, maxima_first: bool) -> [L; 2] {
+    fn planes<L: Lanes<S>>(&self, isa: L::Isa, axis: usize, first: usize) -> [L; 2] {
         const { assert!(N == L::COUNT) }
         let rows = &self.planes[axis];
-        let first = usize::from(maxima_first);
-        [L::from_slice(isa, &rows[first]), L::from_slice(isa, &rows[1 - first])]
+        [L::from_slice(isa, &rows[first & 1]), L::from_slice(isa, &rows[first & 1 ^ 1])]
     }
 
     fn child(&self, lane: usize) -> Option<(Aabb<S>, Reference)> {

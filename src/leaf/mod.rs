@@ -88,7 +88,7 @@ pub(crate) trait LaneTest<S: Scalar>: 'static {
     /// What is computed of a ray once, at the first leaf that it meets.
     type Frame: Copy;
 
-    fn frame(ray: &Ray<S>) -> Self::Frame;
+    fn frame(ray: &Ray<S>, slabs: &Slabs<S>) -> Self::Frame;
 
     /// Whether lanes may be tested with this ray, in a tree whose coordinates are below `Scalar::LARGE_AREA`.
     fn suits(ray: &Ray<S>) -> bool;

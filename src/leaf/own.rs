@@ -61,7 +61,7 @@ impl<S: Scalar, K: Sieve<S>> Kernel for Candidates<'_, S, K> {
 
     #[inline(always)]
     fn run<I: Isa>(self, isa: I) -> u32 {
-        let operands = Operands::<S, S::Times8Of16<I>>::new(isa, self.rows);
-        <S::Times8Of16<I> as Lanes<S>>::bits(K::candidates(&operands, self.ray))
+        let operands = Operands::<S, S::Times8<I>>::new(isa, self.rows);
+        <S::Times8<I> as Lanes<S>>::bits(K::candidates(&operands, self.ray))
     }
 }

@@ -28,8 +28,8 @@ impl LaneTest<f32> for PreciseLeaf {
     type Frame = RayFrame<f32>;
 
     #[inline(always)]
-    fn frame(ray: &Ray) -> RayFrame<f32> {
-        RayFrame::of(ray)
+    fn frame(ray: &Ray, slabs: &Slabs<f32>) -> RayFrame<f32> {
+        RayFrame::of(ray, slabs)
     }
 
     #[inline(always)]

@@ -26,8 +26,8 @@ impl<S: Scalar> LaneTest<S> for SphereLeaf {
     type Frame = Slabs<S>;
 
     #[inline(always)]
-    fn frame(ray: &Ray<S>) -> Slabs<S> {
-        Slabs::new(ray)
+    fn frame(_: &Ray<S>, slabs: &Slabs<S>) -> Slabs<S> {
+        *slabs
     }
 
     /// The padding of boxes has the other sign behind the origin.

@@ -45,7 +45,7 @@ impl<S: Scalar, T: LaneTest<S>> Kernel for TestLanes<'_, S, T> {
     #[inline(always)]
     fn run<I: Isa>(self, isa: I) {
         let Self { rows, ray, frame, hits, .. } = self;
-        let operands = Operands::<S, S::Times8Of16<I>>::new(isa, rows);
+        let operands = Operands::<S, S::Times8<I>>::new(isa, rows);
         let found = T::test(&operands, ray, frame, ray.t_max);
         (hits.settled, hits.undecided) = (found.settled, found.undecided);
         if found.settled != 0 {

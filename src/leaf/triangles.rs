@@ -45,8 +45,8 @@ impl<S: Scalar> LaneTest<S> for FastLeaf {
     type Frame = RayFrame<S>;
 
     #[inline(always)]
-    fn frame(ray: &Ray<S>) -> RayFrame<S> {
-        RayFrame::of(ray)
+    fn frame(ray: &Ray<S>, slabs: &Slabs<S>) -> RayFrame<S> {
+        RayFrame::of(ray, slabs)
     }
 
     #[inline(always)]
@@ -78,8 +78,8 @@ impl<S: Scalar> LaneTest<S> for WatertightLeaf {
     type Frame = RayFrame<S>;
 
     #[inline(always)]
-    fn frame(ray: &Ray<S>) -> RayFrame<S> {
-        RayFrame::of(ray)
+    fn frame(ray: &Ray<S>, slabs: &Slabs<S>) -> RayFrame<S> {
+        RayFrame::of(ray, slabs)
     }
 
     #[inline(always)]
@@ -118,9 +118,10 @@ pub(crate) struct RayFrame<S> {
 
 impl<S: Scalar> RayFrame<S> {
     #[inline(always)]
-    pub fn of(ray: &Ray<S>) -> Self {
-        let (shear, Slabs { inv_near, inv_far, .. }) = (Shear::of(ray), Slabs::new(ray));
+    pub fn of(ray: &Ray<S>, &Slabs { inv_near, inv_far, .. }: &Slabs<S>) -> Self {
+        let shear = Shear::of(ray);
         let [i, j, k] = shear.axes;
+        let (i, j, k) = (i.index(), j.index(), k.index());
         let inv_near = [inv_near[i], inv_near[j], inv_near[k]];
         Self { shear, inv_near, inv_far: [inv_far[i], inv_far[j], inv_far[k]] }
     }
@@ -186,9 +187,8 @@ pub(super) struct EdgeTests<S: Scalar, L: Lanes<S>> {
 impl<S: Scalar, L: Lanes<S>> EdgeTests<S, L> {
     #[inline(always)]
     pub fn new(operands: &Operands<'_, S, L>, shear: &Shear<S>) -> Self {
-        // Bounded once: of what lies in memory a compiler knows no bound, and would compare each of nine rows with it.
         let [i, j, k] = shear.axes;
-        let (i, j, k) = (i.min(2), j.min(2), k.min(2));
+        let (i, j, k) = (i.index(), j.index(), k.index());
         let splat = |x: S| operands.splat(x);
         let [ox, oy, oz] = shear.origin;
         let (ox, oy, oz) = (splat(ox), splat(oy), splat(oz));

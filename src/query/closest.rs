@@ -2,7 +2,6 @@
 
 use super::each::each;
 use super::{Hit, HitOf};
-use crate::geometry::Scalar;
 use crate::layout::NOBODY;
 use crate::leaf::sealed::LeafKind;
 use crate::primitive::{Intersect, accept};
@@ -39,8 +38,8 @@ impl<P: Intersect> AskClosest<'_, P> {
 
 /// The hit that was found in lanes, if there is one.
 #[inline(always)]
-pub(super) fn hit_of<P: Intersect>(found: Found<P::Scalar>) -> Option<HitOf<P>> {
-    let Found { t, index, details } = found;
+pub(super) fn hit_of<P: Intersect>(found: &Found<P::Scalar>) -> Option<HitOf<P>> {
+    let &Found { t, index, details } = found;
     if index == NOBODY {
         return None;
     }
@@ -49,9 +48,4 @@ pub(super) fn hit_of<P: Intersect>(found: Found<P::Scalar>) -> Option<HitOf<P>> 
         index: index as usize,
         payload,
     })
-}
-
-/// No hit yet, of many rays.
-pub(super) fn none<S: Scalar, const COUNT: usize>() -> [Found<S>; COUNT] {
-    [Found::none(S::ZERO); COUNT]
 }

@@ -2,7 +2,7 @@
 
 use super::HitOf;
 use super::any::AskAny;
-use super::closest::{AskClosest, hit_of, none};
+use super::closest::{AskClosest, hit_of};
 use super::hits::AskAll;
 use crate::geometry::{Ray, Scalar};
 use crate::layout::{Layout, NOBODY, WIDTH, WideTree};
@@ -12,7 +12,6 @@ use crate::primitive::Intersect;
 use crate::simd::Backend;
 use crate::traverse::{AskedRay, BestFirst, Counters, FormKernels, Found, ScalarKernels};
 use crate::tree::Tree;
-use core::slice::{from_mut, from_ref};
 
 /// A layout that rays can be traced through: all of them. Sealed.
 pub trait Traverse<P: Intersect>: Layout<P> {
@@ -66,9 +65,6 @@ pub trait Traverse<P: Intersect>: Layout<P> {
     ) -> Counters;
 }
 
-/// Rays of a list whose hits are kept until their payloads are made.
-const CHUNK: usize = 64;
-
 /// The kernels of a type's leaves, if operands say all of its primitives.
 macro_rules! in_lanes {
     ($primitive:ty, $form:ty, $kernel:ident) => {
@@ -87,8 +83,8 @@ impl<P: Intersect, F: FormKernels<P::Scalar>> Traverse<P> for WideTree<P::Scalar
     fn closest_hit(&self, backend: Backend, primitives: &[P], ray: &Ray<P::Scalar>) -> Option<HitOf<P>> {
         if <P::Leaf as LeafKind<P::Scalar, P::Payload>>::IS_SETTLED_IN_LANES {
             let (put, mut found) = (&Primitives(primitives), Found::none(ray.t_max));
-            in_lanes!(P, F, closest)(self, backend, put, from_ref(ray), from_mut(&mut found));
-            hit_of::<P>(found)
+            in_lanes!(P, F, closest)(self, backend, put, ray, &mut found);
+            hit_of::<P>(&found)
         } else {
             self.counted_closest_hit(backend, primitives, ray).0
         }
@@ -97,10 +93,7 @@ impl<P: Intersect, F: FormKernels<P::Scalar>> Traverse<P> for WideTree<P::Scalar
     #[inline]
     fn any_hit(&self, backend: Backend, primitives: &[P], ray: &Ray<P::Scalar>) -> bool {
         if <P::Leaf as LeafKind<P::Scalar, P::Payload>>::IS_SETTLED_IN_LANES {
-            let mut found = false;
-            let put = &Primitives(primitives);
-            in_lanes!(P, F, any)(self, backend, put, from_ref(ray), from_mut(&mut found));
-            found
+            in_lanes!(P, F, any)(self, backend, &Primitives(primitives), ray)
         } else {
             self.counted_any_hit(backend, primitives, ray).0
         }
@@ -116,7 +109,7 @@ impl<P: Intersect, F: FormKernels<P::Scalar>> Traverse<P> for WideTree<P::Scalar
         if <P::Leaf as LeafKind<P::Scalar, P::Payload>>::IS_SETTLED_IN_LANES {
             let put = &Primitives(primitives);
             let (found, steps) = in_lanes!(P, F, counted)(self, backend, put, ray, true);
-            (hit_of::<P>(found), steps)
+            (hit_of::<P>(&found), steps)
         } else {
             let (mut ray, mut ask) = (self.asked_ray(backend, ray), AskClosest { primitives, payload: None });
             (const { F::ASKED.closest })(self, backend, &mut ray, &mut ask);
@@ -134,38 +127,6 @@ impl<P: Intersect, F: FormKernels<P::Scalar>> Traverse<P> for WideTree<P::Scalar
             let (mut ray, mut ask) = (self.asked_ray(backend, ray), AskAny { primitives, is_hit: false });
             (const { F::ASKED.any })(self, backend, &mut ray, &mut ask);
             (ask.is_hit, ray.steps)
-        }
-    }
-
-    fn closest_hits(
-        &self,
-        backend: Backend,
-        primitives: &[P],
-        rays: &[Ray<P::Scalar>],
-        hits: &mut [Option<HitOf<P>>],
-    ) {
-        if <P::Leaf as LeafKind<P::Scalar, P::Payload>>::IS_SETTLED_IN_LANES {
-            let mut found = none::<P::Scalar, CHUNK>();
-            for (rays, hits) in rays.chunks(CHUNK).zip(hits.chunks_mut(CHUNK)) {
-                in_lanes!(P, F, closest)(self, backend, &Primitives(primitives), rays, &mut found);
-                for (hit, found) in hits.iter_mut().zip(&found[..rays.len()]) {
-                    *hit = hit_of::<P>(*found);
-                }
-            }
-        } else {
-            for (ray, hit) in rays.iter().zip(hits) {
-                *hit = self.closest_hit(backend, primitives, ray);
-            }
-        }
-    }
-
-    fn any_hits(&self, backend: Backend, primitives: &[P], rays: &[Ray<P::Scalar>], hits: &mut [bool]) {
-        if <P::Leaf as LeafKind<P::Scalar, P::Payload>>::IS_SETTLED_IN_LANES {
-            in_lanes!(P, F, any)(self, backend, &Primitives(primitives), rays, hits);
-        } else {
-            for (ray, hit) in rays.iter().zip(hits) {
-                *hit = self.any_hit(backend, primitives, ray);
-            }
         }
     }
 
@@ -232,5 +193,93 @@ impl<P: Intersect> Traverse<P> for Tree<P::Scalar> {
         let mut ray = AskedRay::new(ray);
         (const { P::Scalar::BINARY.open })(self, backend, &mut ray, ask, ahead);
         ray.steps
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Bvh, Fast, Precise, Sphere, Triangle, reference};
+    use alloc::vec::Vec;
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
+
+    /// A scalar of a coarse lattice, so that rays meet corners and edges, or of none.
+    fn scalar<S: Scalar>(rng: &mut Pcg64Mcg) -> S {
+        let x: f64 = rng.random_range(-4.0..4.0);
+        S::from_f64(if rng.random() { x } else { x.round() })
+    }
+
+    fn point<S: Scalar>(rng: &mut Pcg64Mcg) -> [S; 3] {
+        [scalar(rng), scalar(rng), scalar(rng)]
+    }
+
+    /// Rays that begin at lattice points or beside them, along the axes or not, of which some look behind their origin.
+    fn rays<S: Scalar>(rng: &mut Pcg64Mcg) -> Vec<Ray<S>> {
+        let mut ray = || {
+            let ray = Ray::new(point(rng), point(rng));
+            match rng.random_range(0..8) {
+                0 => ray.with_interval(S::NEG_INFINITY, S::INFINITY),
+                1 => ray.with_interval(S::ZERO, S::HALF),
+                2 => Ray { direction: [S::ZERO, -S::ZERO, ray.direction[2]], ..ray },
+                _ => ray,
+            }
+        };
+        (0..2000).map(|_| ray()).collect()
+    }
+
+    /// By every variant of every instruction set: some have two, of which users get the quicker one.
+    fn answers_are_those_of_the_loop<P: Intersect<Payload: PartialEq + core::fmt::Debug> + Clone>(
+        primitive: impl Fn(&mut Pcg64Mcg) -> P,
+    ) {
+        let mut rng = Pcg64Mcg::seed_from_u64(1);
+        let primitives: Vec<P> = (0..500).map(|_| primitive(&mut rng)).collect();
+        let bvh = Bvh::build(primitives.clone()).unwrap();
+        let mut hits = 0;
+        for ray in rays::<P::Scalar>(&mut rng) {
+            let expected = reference::closest_hit(&primitives, &ray);
+            hits += usize::from(expected.is_some());
+            for backend in Backend::all() {
+                let answers = (
+                    bvh.layout().closest_hit(backend, &primitives, &ray),
+                    bvh.layout().any_hit(backend, &primitives, &ray),
+                );
+                assert_eq!(answers, (expected, expected.is_some()), "{backend:?}: {ray:?}");
+            }
+        }
+        assert!(hits > 200, "{hits} hits");
+    }
+
+    fn triangle<S: Scalar>(rng: &mut Pcg64Mcg) -> Triangle<S> {
+        Triangle::new(point(rng), point(rng), point(rng))
+    }
+
+    #[test]
+    fn fast_triangles() {
+        answers_are_those_of_the_loop(|rng| Fast(triangle::<f32>(rng)));
+        answers_are_those_of_the_loop(|rng| Fast(triangle::<f64>(rng)));
+    }
+
+    #[test]
+    fn watertight_triangles() {
+        answers_are_those_of_the_loop(triangle::<f32>);
+        answers_are_those_of_the_loop(triangle::<f64>);
+    }
+
+    #[test]
+    fn precise_triangles() {
+        answers_are_those_of_the_loop(|rng| Precise(triangle::<f32>(rng)));
+    }
+
+    #[test]
+    fn spheres() {
+        answers_are_those_of_the_loop(|rng| Sphere {
+            center: point::<f32>(rng),
+            radius: rng.random_range(0.0..1.0),
+        });
+        answers_are_those_of_the_loop(|rng| Sphere {
+            center: point::<f64>(rng),
+            radius: rng.random_range(0.0..1.0),
+        });
     }
 }

@@ -1,6 +1,6 @@
 //! Which instructions a query is compiled for, chosen at run time.
 
-use super::{Baseline, Isa};
+use super::{Baseline, Doubled, Isa, LeafLanes, Single};
 use core::fmt;
 #[cfg(feature = "std")]
 use std::sync::OnceLock;
@@ -63,36 +63,62 @@ pub trait Kernel {
     fn run<I: Isa>(self, isa: I) -> Self::Output;
 }
 
+/// A kernel whose arguments stay in registers: as fields of a [`Kernel`] they would be written to memory and read again, and what
+/// chooses its copy would call it where now it jumps.
+pub trait Routine {
+    type A;
+    type B;
+    type C;
+    type D;
+    type Output;
+    /// Whether there is a copy with [`Doubled`] vectors, where those are quicker.
+    const HAS_DOUBLED: bool;
+
+    /// `#[inline(always)]`, and so is everything that it calls and that is to use the instructions.
+    fn run<I: Isa, W: LeafLanes>(
+        isa: I,
+        backend: Backend,
+        a: Self::A,
+        b: Self::B,
+        c: Self::C,
+        d: Self::D,
+    ) -> Self::Output;
+
+    /// In place of copies for the baseline of x86, which processors of the last ten years go beyond, and for the portable path.
+    fn run_otherwise(backend: Backend, a: Self::A, b: Self::B, c: Self::C, d: Self::D) -> Self::Output;
+}
+
 macro_rules! backends {
-    ($($(#[$where:meta])* $isa:ident($module:ident) = $set:ident,)*) => {
+    ($($(#[$where:meta])* $backend:ident($module:ident::$isa:ident) = $set:ident, $call:ident;)*) => {
         /// An instruction set that the processor was found to have: the variant's value is the
         /// proof.
         #[derive(Clone, Copy, Debug)]
         pub enum Backend {
-            $($(#[$where])* $isa(super::$module::$isa),)*
+            $($(#[$where])* $backend(super::$module::$isa),)*
         }
 
         impl Backend {
             pub fn of(set: InstructionSet) -> Option<Self> {
-                $($(#[$where])* if set == InstructionSet::$set {
-                    return super::$module::$isa::detect().map(Self::$isa);
-                })*
-                None
+                Self::all().find(|backend| backend.instruction_set() == set && backend.is_quicker())
+            }
+
+            /// Those that the processor has.
+            pub fn all() -> impl Iterator<Item = Self> {
+                let all = [$($(#[$where])* super::$module::$isa::detect().map(Self::$backend),)*];
+                all.into_iter().flatten()
             }
 
             pub fn instruction_set(self) -> InstructionSet {
                 match self {
-                    $($(#[$where])* Self::$isa(_) => InstructionSet::$set,)*
+                    $($(#[$where])* Self::$backend(_) => InstructionSet::$set,)*
                 }
             }
 
-            /// Runs the kernel's copy for this instruction set, if it is one that large kernels are compiled for:
-            /// not the baseline of x86, which processors of the last ten years go beyond, nor the portable path.
-            /// Else the kernel comes back.
+            /// Runs the routine's copy for this instruction set.
             #[inline(always)]
-            pub fn run_large<K: Kernel>(self, kernel: K) -> Result<K::Output, K> {
+            pub fn call<R: Routine>(self, a: R::A, b: R::B, c: R::C, d: R::D) -> R::Output {
                 match self {
-                    $($(#[$where])* Self::$isa(isa) => run_large(isa, kernel),)*
+                    $($(#[$where])* Self::$backend(isa) => $call::<_, R>(isa, self, a, b, c, d),)*
                 }
             }
 
@@ -103,7 +129,7 @@ macro_rules! backends {
                     return kernel.run(isa);
                 }
                 match self {
-                    $($(#[$where])* Self::$isa(isa) => run_wide(isa, kernel),)*
+                    $($(#[$where])* Self::$backend(isa) => run_wide(isa, kernel),)*
                 }
             }
         }
@@ -116,17 +142,19 @@ backends! {
         all(target_arch = "aarch64", target_feature = "neon"),
         all(target_arch = "wasm32", target_feature = "simd128"),
     ))))]
-    Portable(portable) = Portable,
+    Portable(portable::Portable) = Portable, call;
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
-    Sse2(x86) = Baseline,
+    Sse2(x86::Sse2) = Baseline, call;
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
-    Avx2(x86) = Avx2,
+    Avx2(x86::Avx2) = Avx2, call;
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
-    Avx512(x86) = Avx512,
+    Avx512(x86::Avx512) = Avx512, call;
+    #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+    Avx512Doubled(x86::Avx512) = Avx512, call_doubled;
     #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
-    Neon(neon) = Baseline,
+    Neon(neon::Neon) = Baseline, call;
     #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-    Simd128(simd128) = Baseline,
+    Simd128(simd128::Simd128) = Baseline, call;
 }
 
 impl Backend {
@@ -143,6 +171,17 @@ impl Backend {
         Self::detect()
     }
 
+    /// Whether it is the quicker on this processor, of two with the same instruction set.
+    fn is_quicker(self) -> bool {
+        match self {
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+            Self::Avx512(_) => !super::x86::is_doubled_quicker(),
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+            Self::Avx512Doubled(_) => super::x86::is_doubled_quicker(),
+            _ => true,
+        }
+    }
+
     fn detect() -> Self {
         let best = InstructionSet::ALL.iter().copied().rev().find_map(Self::of);
         best.expect("every target has a baseline or the portable path")
@@ -155,8 +194,28 @@ fn run_wide<I: Isa, K: Kernel>(isa: I, kernel: K) -> K::Output {
 }
 
 #[inline(always)]
-fn run_large<I: Isa, K: Kernel>(isa: I, kernel: K) -> Result<K::Output, K> {
-    if I::RUNS_LARGE_KERNELS { Ok(vectorized(isa, kernel)) } else { Err(kernel) }
+fn call<I: Isa, R: Routine>(isa: I, backend: Backend, a: R::A, b: R::B, c: R::C, d: R::D) -> R::Output {
+    if const { I::RUNS_ROUTINES } {
+        isa.call::<R, Single>(backend, a, b, c, d)
+    } else {
+        R::run_otherwise(backend, a, b, c, d)
+    }
+}
+
+#[inline(always)]
+fn call_doubled<I: Isa, R: Routine>(
+    isa: I,
+    backend: Backend,
+    a: R::A,
+    b: R::B,
+    c: R::C,
+    d: R::D,
+) -> R::Output {
+    if const { R::HAS_DOUBLED } {
+        isa.call::<R, Doubled>(backend, a, b, c, d)
+    } else {
+        call::<I, R>(isa, backend, a, b, c, d)
+    }
 }
 
 /// Below one function that has the instructions switched on.

@@ -146,8 +146,6 @@ pub trait Halves<H>: Sized {
 pub trait Width: 'static {
     /// A scalar for each child of a node.
     type Lanes<S: Scalar, I: Isa>: Lanes<S, Isa = I>;
-    /// A scalar for each primitive of a leaf.
-    type Leaf<S: Scalar, I: Isa>: Lanes<S, Isa = I>;
 }
 
 /// A number of children.
@@ -155,13 +153,29 @@ pub struct Count<const N: usize>;
 
 impl Width for Count<4> {
     type Lanes<S: Scalar, I: Isa> = S::Times4<I>;
-    type Leaf<S: Scalar, I: Isa> = S::Times8<I>;
 }
 impl Width for Count<8> {
     type Lanes<S: Scalar, I: Isa> = S::Times8<I>;
-    type Leaf<S: Scalar, I: Isa> = S::Times8<I>;
 }
 impl Width for Count<16> {
     type Lanes<S: Scalar, I: Isa> = S::Times16<I>;
-    type Leaf<S: Scalar, I: Isa> = S::Times8Of16<I>;
+}
+
+/// The vectors that a leaf's primitives are tested in.
+pub trait LeafLanes: 'static {
+    /// A scalar for each primitive.
+    type Lanes<S: Scalar, I: Isa>: Lanes<S, Isa = I>;
+}
+
+/// Vectors of as many lanes as a leaf has primitives.
+pub struct Single;
+
+/// Vectors as wide as those of a node's children, which hold everything twice: see `x86::doubled`.
+pub struct Doubled;
+
+impl LeafLanes for Single {
+    type Lanes<S: Scalar, I: Isa> = S::Times8<I>;
+}
+impl LeafLanes for Doubled {
+    type Lanes<S: Scalar, I: Isa> = S::Times8Doubled<I>;
 }

@@ -48,10 +48,10 @@ use simd128::Simd128 as Baseline;
 use x86::Sse2 as Baseline;
 
 pub use backend::InstructionSet;
-pub use backend::{Backend, Kernel};
+pub use backend::{Backend, Kernel, Routine};
 pub use isa::Isa;
-pub(crate) use lanes::{Count, Width, Window};
-pub use lanes::{Halves, KernelLanes, Lanes};
+pub(crate) use lanes::{Count, Doubled, Single, Width, Window};
+pub use lanes::{Halves, KernelLanes, Lanes, LeafLanes};
 pub(crate) use pair::Pair;
 pub use pairs::{F32Lanes4, Lanes4};
 pub(crate) use prefetch::{prefetch, prefetch_ahead};

@@ -9,7 +9,7 @@ use core::arch::aarch64::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Neon(());
 
-plain_isa!(Neon, F32x4, Pair<F64x2>, runs_large_kernels: true);
+plain_isa!(Neon, F32x4, Pair<F64x2>, runs_routines: true);
 
 vector! {
     F32x4(float32x4_t), Mask32x4(uint32x4_t): 4 of f32, Neon;

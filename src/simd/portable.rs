@@ -8,7 +8,7 @@ use crate::simd::vector::vector;
 #[derive(Clone, Copy, Debug)]
 pub struct Portable(());
 
-plain_isa!(Portable, F32x4, F64x4, runs_large_kernels: false);
+plain_isa!(Portable, F32x4, F64x4, runs_routines: false);
 
 /// The same for each of four lanes.
 macro_rules! each {

@@ -10,7 +10,7 @@ use core::arch::wasm32::*;
 #[derive(Clone, Copy, Debug)]
 pub struct Simd128(());
 
-plain_isa!(Simd128, F32x4, Pair<F64x2>, runs_large_kernels: true);
+plain_isa!(Simd128, F32x4, Pair<F64x2>, runs_routines: true);
 
 vector! {
     F32x4(v128), Mask32x4(v128): 4 of f32, Simd128;

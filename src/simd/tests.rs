@@ -184,7 +184,7 @@ impl<S: Scalar> Kernel for All<'_, S> {
             computed::<S, S::Times4<I>>(isa, row),
             computed::<S, S::Times8<I>>(isa, row),
             computed::<S, S::Times16<I>>(isa, row),
-            computed::<S, S::Times8Of16<I>>(isa, row),
+            computed::<S, S::Times8Doubled<I>>(isa, row),
         ]
     }
 }

@@ -65,7 +65,7 @@ impl<S: Scalar, T: LaneTest<S>> Ask<S> for AskLanes<'_, S, T> {
         };
         let mut undecided = (1u32 << indices.len()) - 1;
         if let Some(backend) = self.lanes {
-            let frame = *self.frame.get_or_insert_with(|| T::frame(&ray.ray));
+            let frame = *self.frame.get_or_insert_with(|| T::frame(&ray.ray, &ray.slabs));
             let mut hits = StoredHits::none();
             TestLanes::<S, T> { rows, ray: &ray.ray, frame: &frame, hits: &mut hits, test: PhantomData }
                 .run_on(backend);

@@ -24,14 +24,14 @@ use crate::geometry::{Ray, Scalar, Slabs};
 use crate::layout::WideNode;
 use crate::simd::{Isa, KernelLanes, Lanes};
 
-/// The slabs in lanes.
-pub(super) struct BoxTest<S, L> {
+/// The slabs in lanes. If `AHEAD`, of rays that do not look behind their origin.
+pub(super) struct BoxTest<S, L, const AHEAD: bool> {
     origin: [L; 3],
     inv_near: [L; 3],
     inv_far: [L; 3],
-    /// On which axes the near planes are the maxima.
-    negative: [bool; 3],
-    pub t_min: S,
+    /// For each axis 1 if the near planes are the maxima, else 0.
+    first: [usize; 3],
+    t_min: S,
     /// What is said above holds: inverses are finite, and neither t_min nor t_max has a minus sign. Later limits have none
     /// either, since no hit's t has (see `primitive::accept` and the packed leaves).
     are_ordered_by_bits: bool,
@@ -56,26 +56,27 @@ pub(super) fn is_ordinary<S: Scalar, I: Isa>(isa: I, ray: &Ray<S>) -> bool {
     S::Times4::<I>::bits(all) & 1 != 0
 }
 
-impl<S: Scalar, L: Lanes<S>> BoxTest<S, L> {
+impl<S: Scalar, L: Lanes<S>, const AHEAD: bool> BoxTest<S, L, AHEAD> {
     /// `is_ordinary` is what the ray says.
     #[inline(always)]
-    pub fn new(isa: L::Isa, ray: &Ray<S>, is_ordinary: bool) -> Self {
-        let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin, ray.direction);
-        // In lanes, for the same reason; as `Slabs` computes.
-        let padding = S::from_f64(5.0) * S::EPSILON;
-        let splat = |x: S| S::Times4::<L::Isa>::splat(isa, x);
-        let (one, near, far) = (splat(S::ONE), splat(S::ONE - padding), splat(S::ONE + padding));
-        let (x, y, z) = (one / splat(dx), one / splat(dy), one / splat(dz));
-        let wide = |x: S::Times4<L::Isa>| L::splat(isa, x.lane(0));
+    pub fn new(isa: L::Isa, slabs: &Slabs<S>, is_ordinary: bool) -> Self {
+        let &Slabs { origin, inv_near, inv_far, negative, t_min } = slabs;
+        let splat = |[x, y, z]: [S; 3]| [L::splat(isa, x), L::splat(isa, y), L::splat(isa, z)];
         Self {
-            origin: [L::splat(isa, ox), L::splat(isa, oy), L::splat(isa, oz)],
-            inv_near: [wide(x * near), wide(y * near), wide(z * near)],
-            inv_far: [wide(x * far), wide(y * far), wide(z * far)],
-            negative: [dx.has_minus_sign(), dy.has_minus_sign(), dz.has_minus_sign()],
+            origin: splat(origin),
+            inv_near: splat(inv_near),
+            inv_far: splat(inv_far),
+            first: [usize::from(negative[0]), usize::from(negative[1]), usize::from(negative[2])],
             // +0, whose bits are those of an integer.
-            t_min: ray.t_min + S::ZERO,
-            are_ordered_by_bits: L::orders_by_bits(isa) && (is_ordinary || is_ordered_by_bits(ray)),
+            t_min: t_min + S::ZERO,
+            are_ordered_by_bits: L::orders_by_bits(isa) && is_ordinary,
         }
+    }
+
+    /// Whether the ray does not look behind its origin.
+    #[inline(always)]
+    pub fn is_ahead(&self) -> bool {
+        AHEAD || self.t_min >= S::ZERO
     }
 
     /// Where the ray enters the children's boxes, from t_min on, and which of them it meets up to `limit`.
@@ -96,7 +97,7 @@ impl<S: Scalar, L: Lanes<S>> BoxTest<S, L> {
             let near = x.later(y).later(z.later(t_min));
             let far = x_far.earlier(y_far).earlier(z_far.earlier(t_max));
             (near, L::bits(near.not_after(far)) & node.lanes())
-        } else if self.t_min < S::ZERO {
+        } else if !self.is_ahead() {
             let (near, met) = enter_behind(node, ray, limit);
             (L::from_slice(isa, &near), met)
         } else {
@@ -114,16 +115,9 @@ impl<S: Scalar, L: Lanes<S>> BoxTest<S, L> {
     /// How far from the origin the near planes and the far planes across an axis are.
     #[inline(always)]
     fn distances<T: WideNode<S, N>, const N: usize>(&self, node: &T, axis: usize) -> [L; 2] {
-        let [first, last] = node.planes::<L>(self.origin[0].isa(), axis, self.negative[axis]);
+        let [first, last] = node.planes::<L>(self.origin[0].isa(), axis, self.first[axis]);
         [first - self.origin[axis], last - self.origin[axis]]
     }
-}
-
-/// Whether bits order what the slabs of a ray give that is not ordinary.
-#[cold]
-#[inline(never)]
-fn is_ordered_by_bits<S: Scalar>(ray: &Ray<S>) -> bool {
-    Slabs::new(ray).inv_far.iter().all(|inv| inv.is_finite()) && ray.t_min >= S::ZERO && ray.t_max > S::ZERO
 }
 
 /// The same for a ray that also looks behind its origin, where the padding has the other sign.

@@ -18,11 +18,11 @@ pub(super) fn nearest<S: Scalar, L: Lanes<S>, const N: usize>(
     node: &impl WideNode<S, N>,
     near: L,
     met: u32,
-    t_min: S,
+    is_ahead: bool,
     stack: &mut TraversalStack<'_, S>,
 ) -> Reference {
     let count = met.count_ones() as usize;
-    if t_min >= S::ZERO {
+    if is_ahead {
         let (references, entries) = stack.windows();
         let references = Reference::window(references);
         if let Some(lane) = near.sort(met, Reference::bits(node.children()), references, entries) {

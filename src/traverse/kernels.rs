@@ -12,12 +12,12 @@ use super::best_first::BestFirst;
 use super::box_test::is_ordinary;
 use super::recorder::Counters;
 use super::seam::{Ask, AskedRay};
-use super::visitor::{Any, Asked, Found, InLanes};
+use super::visitor::{Any, Asked, Found, InLanes, Query};
 use super::{binary, wide};
-use crate::geometry::{Ray, Scalar};
+use crate::geometry::{Ray, Scalar, Slabs};
 use crate::layout::{Compact, Form, NOBODY, Packed, Reference, WIDTH, WideTree};
 use crate::leaf::{FastLeaf, LaneTest, PreciseLeaf, PutOperands, SphereLeaf, WatertightLeaf};
-use crate::simd::{Backend, Isa, Kernel};
+use crate::simd::{Backend, Isa, Kernel, LeafLanes, Routine};
 use crate::tree::{Child, Tree};
 use core::marker::PhantomData;
 
@@ -27,14 +27,12 @@ type Wide<S, F> = WideTree<S, WIDTH, F>;
 /// Kernels for leaves whose operands say all of their primitives.
 #[expect(clippy::type_complexity, reason = "a table of functions says what each takes")]
 pub struct LaneKernels<S, F> {
-    /// The closest hit of each of as many rays.
-    pub closest: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &[Ray<S>], &mut [Found<S>]),
-    /// Whether anything is hit, of each of as many rays.
-    pub any: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &[Ray<S>], &mut [bool]),
+    pub closest: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>, &mut Found<S>),
+    pub any: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>) -> bool,
     /// Boxes are opened until the next hit is known, of a valid ray.
     pub open:
         fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>, &mut BestFirst<S, Reference>) -> Counters,
-    /// The same as `closest` and `any` of one ray, with steps counted.
+    /// The same as `closest` and `any`, with steps counted.
     pub counted: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>, IsClosest) -> (Found<S>, Counters),
 }
 
@@ -75,63 +73,116 @@ impl<S: Scalar> FormKernels<S> for Compact {
     const ASKED: AskKernels<S, Wide<S, Self>, Reference> = S::COMPACT_ASKED;
 }
 
-/// The closest hits of a list of rays, the leaf's test inlined.
-struct Closest<'q, S: Scalar, F: Form<S, WIDTH>, T> {
-    tree: &'q Wide<S, F>,
-    rays: &'q [Ray<S>],
-    found: &'q mut [Found<S>],
-    test: PhantomData<T>,
+/// A query of one ray, the leaf's test inlined.
+struct Inlined<'q, S, F, T, Q, K> {
+    types: PhantomData<(&'q S, F, T, Q, K)>,
 }
 
-impl<S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>> Kernel for Closest<'_, S, F, T> {
-    const IS_WIDE: bool = true;
-    type Output = ();
+/// The kernels with a late-bound test.
+trait Late<S, F>: 'static {
+    const KERNELS: LaneKernels<S, F>;
+}
+
+impl<'q, S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>, Q: Asks<S>, K: Late<S, F>> Routine
+    for Inlined<'q, S, F, T, Q, K>
+{
+    type A = &'q Wide<S, F>;
+    type B = &'q dyn PutOperands<S>;
+    type C = &'q Ray<S>;
+    type D = Q::Room<'q>;
+    type Output = Q::Answer;
+    const HAS_DOUBLED: bool = !S::IS_WIDEST;
 
     #[inline(always)]
-    fn run<I: Isa>(self, isa: I) {
-        let Self { tree, rays, found, .. } = self;
+    fn run<I: Isa, W: LeafLanes>(
+        isa: I,
+        backend: Backend,
+        tree: Self::A,
+        put: Self::B,
+        ray: Self::C,
+        room: Self::D,
+    ) -> Q::Answer {
         check_operands::<S, F, T>(tree);
-        // By number: `zip` is a call in builds of several codegen units.
-        for place in 0..rays.len().min(found.len()) {
-            let (ray, found) = (&rays[place], &mut found[place]);
-            *found = Found::none(ray.t_max);
-            let is_ordinary = is_ordinary(isa, ray);
-            if let Some(suits) = suits::<S, F, T>(tree, ray, is_ordinary) {
-                let mut visitor = InLanes::<S, T, _>::new(*found, suits);
-                wide::traverse(isa, tree, ray, is_ordinary, &mut visitor);
-                *found = visitor.query;
-            }
+        let is_ordinary = is_ordinary(isa, ray);
+        if !tree.is_ordinary() || !(is_ordinary || suits::<S, T>(ray)) {
+            return Self::run_otherwise(backend, tree, put, ray, room);
         }
+        let slabs = Slabs::new(ray);
+        let mut visitor = InLanes::<S, T, Q, W>::new(ray, &slabs);
+        wide::traverse::<_, _, _, _, true>(isa, tree, ray, &slabs, is_ordinary, &mut visitor);
+        visitor.query.answer(room)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn run_otherwise(
+        backend: Backend,
+        tree: Self::A,
+        put: Self::B,
+        ray: Self::C,
+        room: Self::D,
+    ) -> Q::Answer {
+        Q::ask(&K::KERNELS, tree, backend, put, ray, room)
     }
 }
 
-/// Whether rays of a list hit anything, the leaf's test inlined.
-struct AnyHit<'q, S: Scalar, F: Form<S, WIDTH>, T> {
-    tree: &'q Wide<S, F>,
-    rays: &'q [Ray<S>],
-    found: &'q mut [bool],
-    test: PhantomData<T>,
+/// A query that can be put to a table of kernels.
+trait Asks<S: Scalar>: Query<S> {
+    /// Where the answer is written, if it is not returned.
+    type Room<'q>;
+    type Answer;
+
+    fn answer(self, room: Self::Room<'_>) -> Self::Answer;
+
+    fn ask<F>(
+        kernels: &LaneKernels<S, F>,
+        tree: &Wide<S, F>,
+        backend: Backend,
+        put: &dyn PutOperands<S>,
+        ray: &Ray<S>,
+        room: Self::Room<'_>,
+    ) -> Self::Answer;
 }
 
-impl<S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>> Kernel for AnyHit<'_, S, F, T> {
-    const IS_WIDE: bool = true;
-    type Output = ();
+impl<S: Scalar> Asks<S> for Found<S> {
+    type Room<'q> = &'q mut Self;
+    type Answer = ();
 
     #[inline(always)]
-    fn run<I: Isa>(self, isa: I) {
-        let Self { tree, rays, found, .. } = self;
-        check_operands::<S, F, T>(tree);
-        for place in 0..rays.len().min(found.len()) {
-            let (ray, found) = (&rays[place], &mut found[place]);
-            let mut query = Any { t_max: ray.t_max, is_hit: false };
-            let is_ordinary = is_ordinary(isa, ray);
-            if let Some(suits) = suits::<S, F, T>(tree, ray, is_ordinary) {
-                let mut visitor = InLanes::<S, T, _>::new(query, suits);
-                wide::traverse(isa, tree, ray, is_ordinary, &mut visitor);
-                query = visitor.query;
-            }
-            *found = query.is_hit;
-        }
+    fn answer(self, room: &mut Self) {
+        *room = self;
+    }
+
+    fn ask<F>(
+        kernels: &LaneKernels<S, F>,
+        tree: &Wide<S, F>,
+        backend: Backend,
+        put: &dyn PutOperands<S>,
+        ray: &Ray<S>,
+        room: &mut Self,
+    ) {
+        (kernels.closest)(tree, backend, put, ray, room);
+    }
+}
+
+impl<S: Scalar> Asks<S> for Any<S> {
+    type Room<'q> = ();
+    type Answer = bool;
+
+    #[inline(always)]
+    fn answer(self, (): ()) -> bool {
+        self.is_hit
+    }
+
+    fn ask<F>(
+        kernels: &LaneKernels<S, F>,
+        tree: &Wide<S, F>,
+        backend: Backend,
+        put: &dyn PutOperands<S>,
+        ray: &Ray<S>,
+        (): (),
+    ) -> bool {
+        (kernels.any)(tree, backend, put, ray)
     }
 }
 
@@ -141,20 +192,11 @@ fn check_operands<S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>>(tree: &Wide<S, F
     assert!(tree.has_operands(T::OPERANDS), "a tree is queried for what it was built of");
 }
 
-/// Whether lanes may be tested with the ray, none if it is invalid: most are ordinary, and then all is known.
-#[inline(always)]
-fn suits<S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>>(
-    tree: &Wide<S, F>,
-    ray: &Ray<S>,
-    is_ordinary: bool,
-) -> Option<bool> {
-    #[cold]
-    #[inline(never)]
-    fn of_others<S: Scalar, T: LaneTest<S>>(ray: &Ray<S>) -> Option<bool> {
-        ray.validate().is_ok().then(|| T::suits(ray))
-    }
-    let suits = if is_ordinary { true } else { of_others::<S, T>(ray)? };
-    Some(suits && tree.is_ordinary())
+/// Whether a ray that is not ordinary is valid, and lanes may be tested with it.
+#[cold]
+#[inline(never)]
+fn suits<S: Scalar, T: LaneTest<S>>(ray: &Ray<S>) -> bool {
+    ray.validate().is_ok() && T::suits(ray)
 }
 
 /// One ray, whose leaves are asked.
@@ -175,8 +217,10 @@ impl<S: Scalar, F: Form<S, WIDTH>, const IN_ORDER: bool> Kernel for AskWide<'_, 
             return;
         }
         ray.steps.rays += 1;
-        let start = ray.ray;
-        wide::traverse(isa, tree, &start, start.is_ordinary(), &mut Asked::<S, IN_ORDER> { ask, ray });
+        let (start, slabs) = (ray.ray, ray.slabs);
+        let is_ordinary = start.is_ordinary();
+        let mut visitor = Asked::<S, IN_ORDER> { ask, ray };
+        wide::traverse::<_, _, _, _, false>(isa, tree, &start, &slabs, is_ordinary, &mut visitor);
     }
 }
 
@@ -211,7 +255,8 @@ fn ask_lanes<S: Scalar, F: FormKernels<S>, T: LaneTest<S>>(
 ) -> (Found<S>, Counters) {
     check_operands::<S, F, T>(tree);
     let mut asked = AskedRay::new(ray);
-    if let Some(suits) = suits::<S, F, T>(tree, ray, ray.is_ordinary()) {
+    if ray.is_valid() {
+        let suits = tree.is_ordinary() && T::suits(ray);
         kernel(&mut asked, &mut AskLanes::<S, T>::new(put, wanted, suits.then_some(isa)));
     }
     (Found { t: asked.ray.t_max, index: asked.index, details: asked.details }, asked.steps)
@@ -224,22 +269,12 @@ macro_rules! late {
         type Put<'a> = &'a dyn PutOperands<$scalar>;
 
         #[inline(never)]
-        fn closest(
-            tree: &Tree,
-            isa: Backend,
-            put: Put<'_>,
-            rays: &[Ray<$scalar>],
-            found: &mut [Found<$scalar>],
-        ) {
-            for (ray, found) in rays.iter().zip(found) {
-                (*found, _) = counted(tree, isa, put, ray, true);
-            }
+        fn closest(tree: &Tree, isa: Backend, put: Put<'_>, ray: &Ray<$scalar>, found: &mut Found<$scalar>) {
+            *found = counted(tree, isa, put, ray, true).0;
         }
         #[inline(never)]
-        fn any(tree: &Tree, isa: Backend, put: Put<'_>, rays: &[Ray<$scalar>], found: &mut [bool]) {
-            for (ray, found) in rays.iter().zip(found) {
-                *found = counted(tree, isa, put, ray, false).0.index != NOBODY;
-            }
+        fn any(tree: &Tree, isa: Backend, put: Put<'_>, ray: &Ray<$scalar>) -> bool {
+            counted(tree, isa, put, ray, false).0.index != NOBODY
         }
         #[inline(never)]
         fn open(
@@ -276,29 +311,20 @@ macro_rules! inlined {
     ($scalar:ty, $form:ty, $test:ty) => {{
         type Tree = Wide<$scalar, $form>;
         type Put<'a> = &'a dyn PutOperands<$scalar>;
-        const LATE: LaneKernels<$scalar, $form> = late!($scalar, $form, $test);
+        struct Asked;
+        impl Late<$scalar, $form> for Asked {
+            const KERNELS: LaneKernels<$scalar, $form> = late!($scalar, $form, $test);
+        }
 
         #[inline(never)]
-        fn closest(
-            tree: &Tree,
-            isa: Backend,
-            put: Put<'_>,
-            rays: &[Ray<$scalar>],
-            found: &mut [Found<$scalar>],
-        ) {
-            let kernel = Closest { tree, rays, found, test: PhantomData::<$test> };
-            if let Err(Closest { found, .. }) = isa.run_large(kernel) {
-                (LATE.closest)(tree, isa, put, rays, found);
-            }
+        fn closest(tree: &Tree, isa: Backend, put: Put<'_>, ray: &Ray<$scalar>, found: &mut Found<$scalar>) {
+            isa.call::<Inlined<'_, $scalar, $form, $test, Found<$scalar>, Asked>>(tree, put, ray, found);
         }
         #[inline(never)]
-        fn any(tree: &Tree, isa: Backend, put: Put<'_>, rays: &[Ray<$scalar>], found: &mut [bool]) {
-            let kernel = AnyHit { tree, rays, found, test: PhantomData::<$test> };
-            if let Err(AnyHit { found, .. }) = isa.run_large(kernel) {
-                (LATE.any)(tree, isa, put, rays, found);
-            }
+        fn any(tree: &Tree, isa: Backend, put: Put<'_>, ray: &Ray<$scalar>) -> bool {
+            isa.call::<Inlined<'_, $scalar, $form, $test, Any<$scalar>, Asked>>(tree, put, ray, ())
         }
-        LaneKernels { closest, any, ..LATE }
+        LaneKernels { closest, any, ..<Asked as Late<_, _>>::KERNELS }
     }};
 }
 

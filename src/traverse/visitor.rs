@@ -6,7 +6,8 @@ use crate::geometry::{Ray, Scalar, Slabs};
 use crate::layout::{Form, NOBODY, Reference, WideTree};
 use crate::leaf::{LEAF_WIDTH, LaneHits, LaneTest, Operands, operands_of};
 use crate::primitive::precedes;
-use crate::simd::{Count, Isa, Lanes, Width};
+use crate::simd::{Count, Isa, Lanes, LeafLanes, Width};
+use core::marker::PhantomData;
 use core::ops::ControlFlow;
 
 /// A query, as the wide loop sees it.
@@ -30,7 +31,6 @@ pub(super) trait Visitor<S: Scalar> {
         isa: I,
         tree: &WideTree<S, N, F>,
         leaf: Reference,
-        ray: &Ray<S>,
     ) -> ControlFlow<()>
     where
         Count<N>: Width;
@@ -39,6 +39,9 @@ pub(super) trait Visitor<S: Scalar> {
 /// What is wanted of the hits.
 pub(super) trait Query<S: Scalar>: Copy {
     const IN_ORDER: bool;
+
+    /// Nothing found yet.
+    fn of(ray: &Ray<S>) -> Self;
 
     fn limit(&self) -> S;
 
@@ -68,6 +71,11 @@ impl<S: Scalar> Query<S> for Found<S> {
     const IN_ORDER: bool = true;
 
     #[inline(always)]
+    fn of(ray: &Ray<S>) -> Self {
+        Self::none(ray.t_max)
+    }
+
+    #[inline(always)]
     fn limit(&self) -> S {
         self.t
     }
@@ -92,6 +100,11 @@ impl<S: Scalar> Query<S> for Any<S> {
     const IN_ORDER: bool = false;
 
     #[inline(always)]
+    fn of(ray: &Ray<S>) -> Self {
+        Self { t_max: ray.t_max, is_hit: false }
+    }
+
+    #[inline(always)]
     fn limit(&self) -> S {
         self.t_max
     }
@@ -104,22 +117,23 @@ impl<S: Scalar> Query<S> for Any<S> {
 }
 
 /// Leaves that have operands which say all of their primitives.
-pub(super) struct InLanes<S: Scalar, T: LaneTest<S>, Q> {
+pub(super) struct InLanes<'q, S: Scalar, T: LaneTest<S>, Q, W> {
+    ray: &'q Ray<S>,
+    slabs: &'q Slabs<S>,
     pub query: Q,
     /// Of the ray, once there has been a leaf.
     frame: Option<T::Frame>,
-    /// Lanes may be tested.
-    suits: bool,
+    lanes: PhantomData<W>,
 }
 
-impl<S: Scalar, T: LaneTest<S>, Q: Query<S>> InLanes<S, T, Q> {
+impl<'q, S: Scalar, T: LaneTest<S>, Q: Query<S>, W> InLanes<'q, S, T, Q, W> {
     #[inline(always)]
-    pub fn new(query: Q, suits: bool) -> Self {
-        Self { query, frame: None, suits }
+    pub fn new(ray: &'q Ray<S>, slabs: &'q Slabs<S>) -> Self {
+        Self { ray, slabs, query: Q::of(ray), frame: None, lanes: PhantomData }
     }
 }
 
-impl<S: Scalar, T: LaneTest<S>, Q: Query<S>> Visitor<S> for InLanes<S, T, Q> {
+impl<S: Scalar, T: LaneTest<S>, Q: Query<S>, W: LeafLanes> Visitor<S> for InLanes<'_, S, T, Q, W> {
     const IN_ORDER: bool = Q::IN_ORDER;
 
     #[inline(always)]
@@ -133,7 +147,6 @@ impl<S: Scalar, T: LaneTest<S>, Q: Query<S>> Visitor<S> for InLanes<S, T, Q> {
         isa: I,
         tree: &WideTree<S, N, F>,
         leaf: Reference,
-        ray: &Ray<S>,
     ) -> ControlFlow<()>
     where
         Count<N>: Width,
@@ -142,29 +155,24 @@ impl<S: Scalar, T: LaneTest<S>, Q: Query<S>> Visitor<S> for InLanes<S, T, Q> {
         let indices = unsafe { F::indices(tree, leaf, T::OPERANDS) };
         // SAFETY: as above.
         let rows = unsafe { F::rows(tree, leaf, T::OPERANDS) };
-        let undecided = if self.suits {
-            let frame = self.frame.get_or_insert_with(
-                #[inline(always)]
-                || T::frame(ray),
-            );
-            let operands = Operands::<_, <Count<N> as Width>::Leaf<S, I>>::new(isa, rows);
-            let hits = T::test(&operands, ray, frame, self.query.limit());
-            self.settled(&hits, indices)?;
-            hits.undecided
-        } else {
-            let lanes = indices.iter().enumerate().rev();
-            lanes.fold(0, |all, (lane, &index)| all << 1 | u32::from(F::has(leaf, lane, index)))
-        };
+        let frame = self.frame.get_or_insert_with(
+            #[inline(always)]
+            || T::frame(self.ray, self.slabs),
+        );
+        let operands = Operands::<_, W::Lanes<S, I>>::new(isa, rows);
+        let hits = T::test(&operands, self.ray, frame, self.query.limit());
+        self.settled(&hits, indices)?;
+        let undecided = hits.undecided;
         if undecided == 0 {
             return ControlFlow::Continue(());
         }
         let flow;
-        (self.query, flow) = decide::<S, T, Q>(self.query, undecided, indices, rows, ray);
+        (self.query, flow) = decide::<S, T, Q>(self.query, undecided, indices, rows, self.ray);
         flow
     }
 }
 
-impl<S: Scalar, T: LaneTest<S>, Q: Query<S>> InLanes<S, T, Q> {
+impl<S: Scalar, T: LaneTest<S>, Q: Query<S>, W> InLanes<'_, S, T, Q, W> {
     #[inline(always)]
     fn settled<L: Lanes<S>>(&mut self, hits: &LaneHits<L>, indices: &[u32; LEAF_WIDTH]) -> ControlFlow<()> {
         let mut lanes = hits.settled;
@@ -226,7 +234,6 @@ impl<S: Scalar, const IN_ORDER: bool> Visitor<S> for Asked<'_, S, IN_ORDER> {
         _: I,
         tree: &WideTree<S, N, F>,
         leaf: Reference,
-        _: &Ray<S>,
     ) -> ControlFlow<()>
     where
         Count<N>: Width,

@@ -20,19 +20,21 @@ use crate::layout::{Form, Outline, Reference, WideNode, WideTree};
 use crate::simd::{Count, Isa, KernelLanes, Width};
 use core::mem::take;
 
-/// Shows `visitor` the leaves whose boxes a valid ray meets, until it breaks. `is_ordinary` is what the ray says.
+/// Shows `visitor` the leaves whose boxes a valid ray meets, until it breaks. `is_ordinary` is what the ray says;
+/// if `AHEAD` its t_min is not negative.
 #[inline(always)]
-pub(super) fn traverse<S: Scalar, I: Isa, F: Form<S, N>, const N: usize>(
+pub(super) fn traverse<S: Scalar, I: Isa, F: Form<S, N>, const N: usize, const AHEAD: bool>(
     isa: I,
     tree: &WideTree<S, N, F>,
     ray: &Ray<S>,
+    slabs: &Slabs<S>,
     is_ordinary: bool,
     visitor: &mut impl Visitor<S>,
 ) where
     Count<N>: Width,
 {
     let Some(mut next) = first(tree, ray, visitor.limit()) else { return };
-    let boxes: BoxTest<S, Row<S, I, N>> = BoxTest::new(isa, ray, is_ordinary);
+    let boxes: BoxTest<S, Row<S, I, N>, AHEAD> = BoxTest::new(isa, slabs, is_ordinary);
     let fetches = tree.is_large();
     let mut memory = Memory::new();
     let mut stack = TraversalStack::new(&mut memory);
@@ -54,13 +56,13 @@ pub(super) fn open<S: Scalar, I: Isa, F: Form<S, N>, const N: usize>(
     Count<N>: Width,
 {
     let ray = visitor.ray.ray;
-    let boxes: BoxTest<S, Row<S, I, N>> = BoxTest::new(isa, &ray, ray.is_ordinary());
+    let boxes: BoxTest<S, Row<S, I, N>, false> = BoxTest::new(isa, &visitor.ray.slabs, ray.is_ordinary());
     while let Some(place) = ahead.next_box() {
         if place.is_leaf() {
             visitor.ray.hits = take(&mut ahead.hits);
             // Whatever it finds, all of the leaf is tested.
             // SAFETY: `ahead` has the tree's root, and children of its nodes.
-            let _ = unsafe { visitor.leaf(isa, tree, place, &ray) };
+            let _ = unsafe { visitor.leaf(isa, tree, place) };
             ahead.hits = take(&mut visitor.ray.hits);
         } else {
             visitor.node();
@@ -111,12 +113,12 @@ type Row<S, I, const N: usize> = <Count<N> as Width>::Lanes<S, I>;
 /// `place` is one of the tree's nodes or leaves, and so are those on the stack.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "a loop's state, in registers")]
-unsafe fn step<S: Scalar, I: Isa, V: Visitor<S>, F: Form<S, N>, const N: usize>(
+unsafe fn step<S: Scalar, I: Isa, V: Visitor<S>, F: Form<S, N>, const N: usize, const AHEAD: bool>(
     isa: I,
     tree: &WideTree<S, N, F>,
     place: Reference,
     ray: &Ray<S>,
-    boxes: &BoxTest<S, Row<S, I, N>>,
+    boxes: &BoxTest<S, Row<S, I, N>, AHEAD>,
     stack: &mut TraversalStack<'_, S>,
     visitor: &mut V,
     fetches: bool,
@@ -126,7 +128,7 @@ where
 {
     if place.is_leaf() {
         // SAFETY: the caller's word.
-        if unsafe { visitor.leaf(isa, tree, place, ray) }.is_break() {
+        if unsafe { visitor.leaf(isa, tree, place) }.is_break() {
             return None;
         }
     } else {
@@ -139,7 +141,7 @@ where
                 return Some(node.children()[met.trailing_zeros() as usize % N]);
             }
             let next = if V::IN_ORDER {
-                nearest(node, near, met, boxes.t_min, stack)
+                nearest(node, near, met, boxes.is_ahead(), stack)
             } else {
                 last::<_, Row<S, I, N>, N>(isa, node, met, stack)
             };

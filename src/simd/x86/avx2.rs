@@ -3,7 +3,7 @@
 use super::arch::*;
 use super::{halves, has};
 use crate::simd::vector::vector;
-use crate::simd::{Isa, Pair};
+use crate::simd::{Backend, Isa, LeafLanes, Pair, Routine};
 
 /// Proof of AVX2.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ impl Isa for Avx2 {
     type F32x4 = F32x4;
     type F32x8 = F32x8;
     type F32x16 = Pair<F32x8>;
-    type F32x8Of16 = F32x8;
+    type F32x8Doubled = F32x8;
     type F64x4 = F64x4;
     type F64x8 = Pair<F64x4>;
     type F64x16 = Pair<Pair<F64x4>>;
@@ -47,6 +47,29 @@ impl Isa for Avx2 {
         }
         // SAFETY: the token.
         unsafe { with_instructions(f) }
+    }
+    #[inline(always)]
+    fn call<R: Routine, W: LeafLanes>(
+        self,
+        backend: Backend,
+        a: R::A,
+        b: R::B,
+        c: R::C,
+        d: R::D,
+    ) -> R::Output {
+        #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+        fn routine<I: Isa, R: Routine, W: LeafLanes>(
+            isa: I,
+            backend: Backend,
+            a: R::A,
+            b: R::B,
+            c: R::C,
+            d: R::D,
+        ) -> R::Output {
+            R::run::<I, W>(isa, backend, a, b, c, d)
+        }
+        // SAFETY: the token.
+        unsafe { routine::<Self, R, W>(self, backend, a, b, c, d) }
     }
 }
 

@@ -2,10 +2,9 @@
 #![expect(unused_unsafe, reason = "masks are integers: their operations are safe, those of vectors are not")]
 
 use super::arch::*;
-use super::twice::F32x8Twice;
 use super::{halves, has, sort};
 use crate::simd::vector::vector;
-use crate::simd::{Isa, Pair, Window};
+use crate::simd::{Backend, Isa, LeafLanes, Pair, Routine, Window};
 
 /// Proof of AVX-512.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +34,7 @@ impl Isa for Avx512 {
     type F32x4 = F32x4;
     type F32x8 = F32x8;
     type F32x16 = F32x16;
-    type F32x8Of16 = F32x8Twice;
+    type F32x8Doubled = super::doubled::F32x8Doubled;
     type F64x4 = F64x4;
     type F64x8 = F64x8;
     type F64x16 = Pair<F64x8>;
@@ -55,6 +54,30 @@ impl Isa for Avx512 {
         }
         // SAFETY: the token.
         unsafe { with_instructions(f) }
+    }
+    #[inline(always)]
+    fn call<R: Routine, W: LeafLanes>(
+        self,
+        backend: Backend,
+        a: R::A,
+        b: R::B,
+        c: R::C,
+        d: R::D,
+    ) -> R::Output {
+        #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+        #[target_feature(enable = "avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
+        fn routine<I: Isa, R: Routine, W: LeafLanes>(
+            isa: I,
+            backend: Backend,
+            a: R::A,
+            b: R::B,
+            c: R::C,
+            d: R::D,
+        ) -> R::Output {
+            R::run::<I, W>(isa, backend, a, b, c, d)
+        }
+        // SAFETY: the token.
+        unsafe { routine::<Self, R, W>(self, backend, a, b, c, d) }
     }
 }
 
@@ -161,7 +184,7 @@ vector! {
         entries: &mut Window<f32>,
     ) -> Option<u32> {
         let children = row(self.1, children);
-        Some(sort::sort(self.1, self.0, met as u16, children, references, entries))
+        sort::sort(self.1, self.0, met as u16, children, references, entries)
     }
     #[inline(always)]
     fn compress(isa: Avx512, met: u32, children: &[u32], references: &mut Window<u32>) -> bool {

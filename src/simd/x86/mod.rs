@@ -2,9 +2,9 @@
 
 mod avx2;
 mod avx512;
+mod doubled;
 mod sort;
 mod sse2;
-mod twice;
 
 #[cfg(target_arch = "x86")]
 use core::arch::x86 as arch;
@@ -13,6 +13,7 @@ use core::arch::x86_64 as arch;
 
 pub use avx2::Avx2;
 pub use avx512::Avx512;
+pub use doubled::is_doubled_quicker;
 pub use sse2::Sse2;
 
 /// Whether the processor has all of these; without `std`, whether the build's target has.

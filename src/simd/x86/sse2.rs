@@ -9,7 +9,7 @@ use crate::simd::vector::vector;
 #[derive(Clone, Copy, Debug)]
 pub struct Sse2(());
 
-plain_isa!(Sse2, F32x4, Pair<F64x2>, runs_large_kernels: false);
+plain_isa!(Sse2, F32x4, Pair<F64x2>, runs_routines: false);
 
 vector! {
     F32x4(__m128), Mask32x4(__m128): 4 of f32, Sse2;

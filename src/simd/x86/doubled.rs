@@ -14,9 +14,10 @@
 use super::Avx512;
 use super::arch::*;
 use crate::simd::vector::vector;
+use core::sync::atomic::{AtomicU8, Ordering};
 
 vector! {
-    F32x8Twice(__m512), Mask8Twice(__mmask16): 8 of f32, Avx512;
+    F32x8Doubled(__m512), Mask8Doubled(__mmask16): 8 of f32, Avx512;
     splat(x) = _mm512_set1_ps(x);
     load(from) = _mm512_broadcast_f32x8(_mm256_loadu_ps(from));
     load_bytes(from) = {
@@ -47,4 +48,21 @@ vector! {
     or(a, b) = a | b;
     not(a) = !a;
     bits(mask) = u32::from(mask) & 0xFF;
+}
+
+/// Whether doubled vectors are quicker than single ones: on Intel's processors. On AMD's they are no quicker, and slower where
+/// 512 bits take two passes: with single ones, on Zen 4, closest hits were 1.03 to 1.08 times as quick, any hits 1.03 to 1.10.
+pub fn is_doubled_quicker() -> bool {
+    /// 0 as long as nobody has asked: on a virtual machine the question takes microseconds.
+    static ANSWER: AtomicU8 = AtomicU8::new(0);
+    let mut answer = ANSWER.load(Ordering::Relaxed);
+    if answer == 0 {
+        // SAFETY: a processor with AVX2 has the instruction, and nobody asks on others.
+        let vendor = unsafe { __cpuid(0) };
+        let is_intel =
+            [vendor.ebx, vendor.edx, vendor.ecx].map(u32::to_le_bytes) == [*b"Genu", *b"ineI", *b"ntel"];
+        answer = 1 + u8::from(is_intel);
+        ANSWER.store(answer, Ordering::Relaxed);
+    }
+    answer == 2
 }
