@@ -27,7 +27,7 @@
 //! - What a tree can hold: [`Primitive`], one method; to be hit by rays, [`Intersect`], one more.
 //!   Built in: [`Triangle`], [`TriangleMesh`], [`Sphere`], [`Aabb`].
 //! - How exactly a triangle is tested, by type: [`Watertight`], what [`Triangle`] is by itself, [`Fast`]
-//!   or [`Precise`]; each with its errors and its price in the README.
+//!   or [`Precise`]; `docs/accuracy.md` has the errors and the price of each.
 //! - How it is built: [`Bvh::build`] for the good default, [`Bvh::builder`] for a [`Quality`], one
 //!   of the [`heuristic`]s or your own, how much to [`Optimise`], the leaf size, threads, a time budget, and what to do
 //!   with invalid primitives. In memory that earlier ones left: [`Workspace`].
@@ -70,8 +70,8 @@ extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
-mod build;
-mod builder;
+mod analysis;
+mod builders;
 mod bvh;
 mod geometry;
 mod layout;
@@ -85,15 +85,30 @@ mod simd;
 mod traverse;
 mod tree;
 
-/// The README's examples are tests.
+/// The examples of the README are tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-pub use build::heuristic;
-pub use build::{Flaw, Gain, Optimise, Pace, PrimRef};
-pub use builder::{BuildError, Builder, OnInvalid, Quality, Workspace};
-pub use bvh::Bvh;
+/// The examples of the page on accuracy are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/accuracy.md")]
+struct AccuracyPage;
+
+/// The examples of the page on layouts are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/layouts.md")]
+struct LayoutsPage;
+
+/// The examples of the page on building are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/building.md")]
+struct BuildingPage;
+
+pub use analysis::{InvariantError, LeafSizes, TreeReport};
+pub use builders::heuristic;
+pub use builders::{BuildControl, InvalidBox, Optimise, OptimiseStats, PrimRef};
+pub use bvh::{BuildError, Builder, Bvh, OnInvalid, Quality, Workspace};
 pub use geometry::{Aabb, Axis, Ray, RayError, Scalar};
 pub use layout::{CompactTree, Layout, WideTree};
 pub use leaf::{
@@ -107,4 +122,4 @@ pub use primitive::{
 pub use query::{Hit, Hits, Traverse};
 pub use simd::{InstructionSet, Lanes};
 pub use traverse::{Counters, Recorder};
-pub use tree::{InvariantError, LeafSizes, MAX_DEPTH, Tree, TreeReport};
+pub use tree::{MAX_DEPTH, Tree};

@@ -10,8 +10,8 @@ mod common {
 
 use bvhkit::heuristic::Heuristic;
 use bvhkit::{
-    BuildError, Builder, Bvh, CompactTree, Fast, Layout, OnInvalid, Pace, Quality, Scalar, Tree, Triangle,
-    WideTree, Workspace,
+    BuildControl, BuildError, Builder, Bvh, CompactTree, Fast, Layout, OnInvalid, Quality, Scalar, Tree,
+    Triangle, WideTree, Workspace,
 };
 use common::{heuristics, scattered};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -82,7 +82,8 @@ fn a_workspace_is_good_for_more_after_a_build_that_failed() {
     let mut workspace = Workspace::new();
     let _turn = turn();
     for _ in 0..2 {
-        let stopped = Bvh::builder().watch(|_| Pace::Stop).build_in(&mut workspace, good.iter().copied());
+        let stopped =
+            Bvh::builder().progress(|_| BuildControl::Stop).build_in(&mut workspace, good.iter().copied());
         assert_eq!(stopped.unwrap_err(), BuildError::Stopped);
         let rejected = Bvh::builder().build_in(&mut workspace, bad.iter().copied());
         assert!(matches!(rejected, Err(BuildError::InvalidPrimitive { index: 7, .. })));
@@ -108,8 +109,10 @@ fn builds_stop_wherever_they_are_told_to() {
         for stop in 0.. {
             let asked = Arc::new(AtomicUsize::new(0));
             let asks = asked.clone();
-            let watcher = move |_| if asks.fetch_add(1, Relaxed) < stop { Pace::Steady } else { Pace::Stop };
-            match builder.clone().watch(watcher).build_in(workspace, triangles.iter().copied()) {
+            let watcher = move |_| {
+                if asks.fetch_add(1, Relaxed) < stop { BuildControl::Steady } else { BuildControl::Stop }
+            };
+            match builder.clone().progress(watcher).build_in(workspace, triangles.iter().copied()) {
                 Err(error) => assert_eq!(error, BuildError::Stopped, "{what}, {stop}"),
                 Ok(bvh) => {
                     assert!(asked.load(Relaxed) <= stop && bvh.layout() == whole.layout(), "{what}, {stop}");

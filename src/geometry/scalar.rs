@@ -14,7 +14,9 @@ compile_error!("bvhkit without its feature `std` needs `libm`, for square roots"
 pub trait Scalar:
     ScalarLanes
     + ScalarParts
-    + crate::build::BuildScalar
+    + crate::builders::CompiledBuilders
+    + crate::bvh::CompiledBuild
+    + crate::layout::CompiledLayout
     + crate::traverse::ScalarKernels
     + Copy
     + Debug
@@ -49,7 +51,7 @@ pub trait Scalar:
     /// The absolute value.
     fn abs(self) -> Self;
     /// Itself, with its sign turned if `other` has a minus sign.
-    fn turned_by(self, other: Self) -> Self;
+    fn xor_sign(self, other: Self) -> Self;
     /// The square root, rounded correctly; NaN below zero.
     fn sqrt(self) -> Self;
     /// Neither infinite nor NaN.
@@ -143,7 +145,7 @@ macro_rules! scalar {
                 $scalar::abs(self)
             }
             #[inline(always)]
-            fn turned_by(self, other: Self) -> Self {
+            fn xor_sign(self, other: Self) -> Self {
                 let sign = 1 << ($bits::BITS - 1);
                 Self::from_bits(self.to_bits() ^ (other.to_bits() & sign))
             }

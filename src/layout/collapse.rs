@@ -1,10 +1,10 @@
 //! The wide tree, as planned: first where every block lies, then what is in it.
 
-use super::blocks::Blocks;
 use super::buffers::Buffers;
-use super::plan::Plan;
+use super::collapse_cost::Plan;
+use super::node_arena::NodeArena;
 use super::shape::{Contents, Kind, Shape};
-use super::wide::{MAX_PENDING, Reference};
+use super::wide::{MAX_STACK, Reference};
 use crate::geometry::{Aabb, Scalar};
 use crate::leaf::LEAF_WIDTH;
 use crate::memory::Word;
@@ -13,9 +13,9 @@ use crate::tree::{Child, MAX_DEPTH, Tree};
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Blocks, and where the first is.
+/// NodeArena, and where the first is.
 pub struct Collapsed {
-    pub(super) blocks: Blocks,
+    pub(super) arena: NodeArena,
     pub(super) root: Option<Reference>,
 }
 
@@ -48,7 +48,7 @@ struct Section<S> {
     /// Where it begins, and how many bytes it takes.
     start: usize,
     bytes: usize,
-    blocks: Vec<Block>,
+    arena: Vec<Block>,
     /// Of all nodes, one after another. References are from the section's begin on.
     children: Vec<(Aabb<S>, Reference)>,
 }
@@ -84,7 +84,7 @@ type RootsOf<'p, S> = &'p (dyn Fn(usize, &mut Vec<(Child, Aabb<S>)>) + Sync);
 /// The wide tree with up to N children a node. None if the references cannot tell so many places
 /// apart.
 ///
-/// No path through it leaves more than [`MAX_PENDING`] children behind or is longer than
+/// No path through it leaves more than [`MAX_STACK`] children behind or is longer than
 /// [`MAX_DEPTH`]: if the cheapest collapse has one, as that of a hostile heuristic's tree may, the
 /// tree is collapsed by levels instead. Then a path of at most `MAX_DEPTH` binary nodes becomes one
 /// of `MAX_DEPTH / log2(N)`, which leaves N - 1 children at each; and a leaf of 2^32 primitives
@@ -95,7 +95,7 @@ pub fn collapse<S: Scalar, const N: usize>(
     shape: &Shape<S>,
     buffers: &mut Buffers,
 ) -> Option<Collapsed> {
-    const { assert!((MAX_DEPTH + 30).div_ceil(N.ilog2() as usize) * (N - 1) <= MAX_PENDING) }
+    const { assert!((MAX_DEPTH + 30).div_ceil(N.ilog2() as usize) * (N - 1) <= MAX_STACK) }
     let plan = Plan::<S, N>::new(tree, shape.cost, buffers.words());
     let work = Work { plan, contents, shape };
     let arrangement = match work.arrange(&|node, roots| work.plan.cheapest(node, roots)) {
@@ -104,7 +104,7 @@ pub fn collapse<S: Scalar, const N: usize>(
     };
     let Arrangement { sections, root } = arrangement.ok()?;
     let memory = |len| buffers.words_for(len);
-    Some(Collapsed { blocks: fill(&sections, tree, contents, shape, memory), root })
+    Some(Collapsed { arena: fill(&sections, tree, contents, shape, memory), root })
 }
 
 /// What does not change on the way.
@@ -147,7 +147,7 @@ impl<S: Scalar, const N: usize> Work<'_, S, N> {
         let (mut sections, mut end, mut root) =
             (Vec::with_capacity(1 + places.len()), top.bytes, Reference::node(0));
         for (section, place) in arranged.into_iter().zip(places) {
-            let start = end.next_multiple_of(Blocks::ALIGN);
+            let start = end.next_multiple_of(NodeArena::ALIGN);
             let section = Section { start, ..section? };
             end = start + section.bytes;
             // A section begins with its first node.
@@ -169,16 +169,16 @@ fn fill<S: Scalar>(
     contents: &dyn Contents<S>,
     shape: &Shape<S>,
     memory: impl FnOnce(usize) -> Vec<Word>,
-) -> Blocks {
+) -> NodeArena {
     let ranges: Vec<_> =
         sections.iter().map(|section| section.start..section.start + section.bytes).collect();
-    Blocks::filled(memory, &ranges, &|number, part| {
-        let Section { start, blocks, children, .. } = &sections[number];
+    NodeArena::filled(memory, &ranges, &|number, part| {
+        let Section { start, arena, children, .. } = &sections[number];
         let mut moved = Vec::new();
         let mut end = 0usize;
-        for (place, block) in blocks.iter().enumerate() {
+        for (place, block) in arena.iter().enumerate() {
             // Primitives lie in the input's order: waiting for them took half of the time.
-            if let Some(leaf) = blocks.get(place + AHEAD).filter(|block| block.kind == Kind::Leaf) {
+            if let Some(leaf) = arena.get(place + AHEAD).filter(|block| block.kind == Kind::Leaf) {
                 tree.indices[leaf.range()].iter().for_each(|&index| contents.prefetch(index));
             }
             let (bytes, align) = shape.extent(block.kind);
@@ -203,9 +203,9 @@ fn fill<S: Scalar>(
 
 impl<S: Scalar> Section<S> {
     /// With room for so many blocks.
-    fn with_capacity(blocks: usize) -> Self {
-        let (blocks, children) = (Vec::with_capacity(blocks), Vec::with_capacity(blocks));
-        Self { start: 0, bytes: 0, blocks, children }
+    fn with_capacity(arena: usize) -> Self {
+        let (arena, children) = (Vec::with_capacity(arena), Vec::with_capacity(arena));
+        Self { start: 0, bytes: 0, arena, children }
     }
 
     /// Decides where the blocks below a node lie: the node, its leaves, then its inner children depth first, but for
@@ -222,7 +222,7 @@ impl<S: Scalar> Section<S> {
         let (mut roots, mut sorted, mut keys) =
             (Vec::with_capacity(N), Vec::with_capacity(N), Vec::with_capacity(N));
         while let Some(Open { child, aabb, place, depth, pending }) = open.pop() {
-            if depth > MAX_DEPTH || pending > MAX_PENDING {
+            if depth > MAX_DEPTH || pending > MAX_STACK {
                 return Err(Failure::TooDeep);
             }
             roots.clear();
@@ -262,7 +262,7 @@ impl<S: Scalar> Section<S> {
         let (bytes, align) = shape.extent(block.kind);
         let offset = self.bytes.next_multiple_of(align);
         self.bytes = offset + bytes;
-        self.blocks.push(block);
+        self.arena.push(block);
         offset
     }
 
@@ -281,10 +281,10 @@ fn dissolve<S: Scalar, const N: usize>(roots: &mut Vec<(Child, Aabb<S>)>, plan: 
     loop {
         let fits = |&(place, leaf): &(usize, Child)| {
             // No fewer than full ones would be, and to look for them takes time.
-            let has_room = |runs: usize| roots.len() - 1 + runs <= N;
+            let has_room = |leaf_ranges: usize| roots.len() - 1 + leaf_ranges <= N;
             let fits = has_room(leaf.count.div_ceil(LEAF_WIDTH as u32) as usize) && {
-                let runs = plan.tree.runs(leaf).len();
-                runs > 0 && has_room(runs)
+                let leaf_ranges = plan.tree.leaf_ranges(leaf).len();
+                leaf_ranges > 0 && has_room(leaf_ranges)
             };
             fits.then(|| (place, plan.area(&roots[place].1)))
         };
@@ -294,17 +294,17 @@ fn dissolve<S: Scalar, const N: usize>(roots: &mut Vec<(Child, Aabb<S>)>, plan: 
         let largest = large.filter_map(|leaf| fits(&leaf)).max_by(|(_, a), (_, b)| a.total_cmp(b));
         let Some((place, _)) = largest else { return };
         let (leaf, within) = roots.swap_remove(place);
-        roots.extend(runs(plan.tree, leaf, within));
+        roots.extend(leaf_ranges(plan.tree, leaf, within));
     }
 }
 
 /// The parts that a leaf was cut into when it was built, if it was.
-fn runs<S: Scalar>(
+fn leaf_ranges<S: Scalar>(
     tree: &Tree<S>,
     leaf: Child,
     within: Aabb<S>,
 ) -> impl ExactSizeIterator<Item = (Child, Aabb<S>)> {
-    tree.runs(leaf).iter().map(move |run| (run.leaf, run.aabb.within(within)))
+    tree.leaf_ranges(leaf).iter().map(move |run| (run.leaf, run.aabb.within(within)))
 }
 
 /// The same roots, the smallest first, in `sorted`. `keys` is memory.
@@ -331,10 +331,10 @@ fn parts<S: Scalar>(
     n: usize,
     roots: &mut Vec<(Child, Aabb<S>)>,
 ) {
-    let runs = runs(tree, leaf, within);
-    debug_assert!(runs.len() <= n);
-    if runs.len() > 0 {
-        roots.extend(runs);
+    let leaf_ranges = leaf_ranges(tree, leaf, within);
+    debug_assert!(leaf_ranges.len() <= n);
+    if leaf_ranges.len() > 0 {
+        roots.extend(leaf_ranges);
         return;
     }
     let slots = leaf.slots();

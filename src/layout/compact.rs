@@ -19,10 +19,10 @@
 //! - 8 children a node instead of 16: -10 to -21 %, and a byte a triangle more;
 //! - leaves as full as those that lie packed: -22 % on sponza's shadow rays, else within the noise, and 0.8 bytes less.
 
-use super::form::{Form, Node};
-use super::grid::Grid;
-use super::plan::LeafCost;
-use super::wide::{NOBODY, Reference, WideTree};
+use super::collapse_cost::LeafCost;
+use super::encoding::{Encoding, Node};
+use super::quantize::Grid;
+use super::wide::{NO_PRIMITIVE, Reference, WideTree};
 use crate::geometry::{Aabb, Scalar, min};
 use crate::leaf::{GATHERED, LEAF_WIDTH};
 use crate::simd::Lanes;
@@ -106,14 +106,14 @@ unsafe impl<S: Scalar, const N: usize> Node<S, N> for CompactNode<S, N> {
     }
 }
 
-impl<S: Scalar, const N: usize> Form<S, N> for Compact {
+impl<S: Scalar, const N: usize> Encoding<S, N> for Compact {
     type Node = CompactNode<S, N>;
     const COPIES: bool = false;
 
     fn new(indices: &mut Vec<u32>, _: usize) -> Self {
         let mut indices = core::mem::take(indices);
         indices.reserve_exact(LEAF_WIDTH);
-        indices.extend([NOBODY; LEAF_WIDTH]);
+        indices.extend([NO_PRIMITIVE; LEAF_WIDTH]);
         indices.shrink_to_fit();
         Self { indices }
     }
@@ -142,18 +142,18 @@ impl<S: Scalar, const N: usize> Form<S, N> for Compact {
     #[inline(always)]
     fn prefetch(tree: &WideTree<S, N, Self>, place: Reference) {
         if !place.is_leaf() {
-            tree.blocks.prefetch(place.offset(), size_of::<CompactNode<S, N>>());
+            tree.arena.prefetch(place.offset(), size_of::<CompactNode<S, N>>());
         }
     }
 
     #[inline(always)]
     unsafe fn indices(tree: &WideTree<S, N, Self>, leaf: Reference, _: usize) -> &[u32; LEAF_WIDTH] {
         // Checked: it takes no time beside what leaves gather.
-        tree.form.indices[leaf.slots().0..].first_chunk().expect("so many follow any slot")
+        tree.encoding.indices[leaf.slots().0..].first_chunk().expect("so many follow any slot")
     }
 
     fn indices_at(tree: &WideTree<S, N, Self>, leaf: Reference) -> Option<&[u32; LEAF_WIDTH]> {
-        tree.form.indices.get(leaf.slots().0..)?.first_chunk()
+        tree.encoding.indices.get(leaf.slots().0..)?.first_chunk()
     }
 
     #[inline(always)]

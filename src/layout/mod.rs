@@ -1,26 +1,27 @@
 //! The memory that queries walk, made from the binary tree.
 
-mod blocks;
 mod buffers;
 mod collapse;
+mod collapse_cost;
 mod compact;
-mod form;
-mod grid;
+mod compiled;
+mod encoding;
+mod node_arena;
 mod packed;
-mod plan;
+mod quantize;
 mod shape;
 mod wide;
 
 pub use buffers::Buffers;
 pub use collapse::{Collapsed, collapse};
 pub(crate) use compact::Compact;
-pub(crate) use form::{Form, Node as WideNode};
+pub use compiled::CompiledLayout;
+pub(crate) use encoding::{Encoding, Node as WideNode};
 pub(crate) use packed::Packed;
 pub use shape::{Contents, Shape};
 pub use wide::{CompactTree, WideTree};
-pub(crate) use wide::{MAX_PENDING, NOBODY, Reference};
+pub(crate) use wide::{MAX_STACK, NO_PRIMITIVE, Reference};
 
-use crate::build::BuildScalar;
 use crate::geometry::{Aabb, Scalar, ScalarParts};
 use crate::leaf::sealed::LeafKind;
 use crate::leaf::{LEAF_WIDTH, Primitives, PutOperands};
@@ -44,7 +45,7 @@ pub trait Layout<P: Primitive>: Outline<P::Scalar> + Send + Sized {
 
     /// Into how many leaves it divides a large one of the tree that has runs.
     #[doc(hidden)]
-    const RUNS: usize;
+    const LEAF_RANGES: usize;
 
     /// How many bytes are reserved for each primitive, if it may take more than references do.
     #[doc(hidden)]
@@ -133,7 +134,7 @@ impl<S: Scalar> Outline<S> for Tree<S> {
 
 impl<P: Primitive> Layout<P> for Tree<P::Scalar> {
     const BLOCK_SIZE: usize = 1;
-    const RUNS: usize = 1;
+    const LEAF_RANGES: usize = 1;
     const RESERVE: usize = 0;
 
     fn lay_out(tree: &mut Self, _: &[P], _: &mut Buffers) -> Option<Self> {
@@ -147,7 +148,7 @@ impl<P: Primitive> Layout<P> for Tree<P::Scalar> {
     }
 }
 
-impl<S: Scalar, const N: usize, F: Form<S, N>> Outline<S> for WideTree<S, N, F> {
+impl<S: Scalar, const N: usize, F: Encoding<S, N>> Outline<S> for WideTree<S, N, F> {
     type Place = Reference;
 
     fn root(&self) -> Option<Reference> {
@@ -163,7 +164,7 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> Outline<S> for WideTree<S, N, F> 
         self.references
     }
     fn bytes(&self) -> usize {
-        self.blocks.bytes() + self.form.bytes()
+        self.arena.bytes() + self.encoding.bytes()
     }
     fn open(&self, place: Reference, show: impl FnMut(Part<S, Reference>)) -> bool {
         if place.is_leaf() {
@@ -180,13 +181,13 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> Outline<S> for WideTree<S, N, F> 
     }
 }
 
-impl<P: Intersect, F: Form<P::Scalar, WIDTH>> Layout<P> for WideTree<P::Scalar, WIDTH, F> {
+impl<P: Intersect, F: Encoding<P::Scalar, WIDTH>> Layout<P> for WideTree<P::Scalar, WIDTH, F> {
     /// Where operands have to be gathered first, each counts.
     const BLOCK_SIZE: usize =
         if F::COPIES && <P::Leaf as LeafKind<_, P::Payload>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
-    const RUNS: usize = WIDTH;
-    /// For leaves of five primitives, and nodes whose children have eight each: what trees of splits take at the most in the README's
-    /// scenes. What is not needed goes back.
+    const LEAF_RANGES: usize = WIDTH;
+    /// Bytes for leaves of five primitives, and for nodes whose children have eight each: the maximum
+    /// of split trees in the scenes of `docs/building.md`. The build returns unused bytes.
     const RESERVE: usize = if <Self as Layout<P>>::BLOCK_SIZE > 1 {
         let leaf = <P::Leaf as LeafKind<_, P::Payload>>::OPERANDS * size_of::<[P::Scalar; LEAF_WIDTH]>()
             + size_of::<[u32; LEAF_WIDTH]>();
@@ -198,22 +199,22 @@ impl<P: Intersect, F: Form<P::Scalar, WIDTH>> Layout<P> for WideTree<P::Scalar, 
     fn lay_out(tree: &mut Tree<P::Scalar>, primitives: &[P], buffers: &mut Buffers) -> Option<Self> {
         let operands = <P::Leaf as LeafKind<_, P::Payload>>::OPERANDS;
         let shape = Shape::of::<WIDTH, F>(operands);
-        let Collapsed { blocks, root } = P::Scalar::collapse(tree, &primitives, &shape, buffers)?;
+        let Collapsed { arena, root } = P::Scalar::collapse(tree, &primitives, &shape, buffers)?;
         let Tree { aabb, .. } = *tree;
         let (len, references) = (tree.len(), tree.indices.len());
-        let form = F::new(&mut tree.indices, operands);
+        let encoding = F::new(&mut tree.indices, operands);
         let coordinates = [aabb.min, aabb.max];
         let is_ordinary = coordinates.as_flattened().iter().all(|x| x.abs() < P::Scalar::LARGE_AREA);
-        Some(Self { blocks, root, aabb, len, references, form, is_ordinary })
+        Some(Self { arena, root, aabb, len, references, encoding, is_ordinary })
     }
 
     fn shrink(&mut self) {
-        self.blocks.shrink();
+        self.arena.shrink();
     }
 
     fn recycle(self, buffers: &mut Buffers) -> Tree<P::Scalar> {
-        buffers.keep_words(self.blocks.into_words());
-        Tree { indices: self.form.into_indices(), ..Tree::default() }
+        buffers.keep_words(self.arena.into_words());
+        Tree { indices: self.encoding.into_indices(), ..Tree::default() }
     }
 }
 

@@ -8,9 +8,9 @@
 //!
 //! Children that there are not have boxes that no ray meets, primitives that there are not have operands NaN.
 
-use super::form::{Form, Node};
-use super::plan::LeafCost;
-use super::wide::{NOBODY, Reference, WideTree};
+use super::collapse_cost::LeafCost;
+use super::encoding::{Encoding, Node};
+use super::wide::{NO_PRIMITIVE, Reference, WideTree};
 use crate::geometry::{Aabb, Scalar};
 use crate::leaf::LEAF_WIDTH;
 use crate::simd::Lanes;
@@ -82,7 +82,7 @@ unsafe impl<S: Scalar, const N: usize> Node<S, N> for WideNode<S, N> {
     }
 }
 
-impl<S: Scalar, const N: usize> Form<S, N> for Packed {
+impl<S: Scalar, const N: usize> Encoding<S, N> for Packed {
     type Node = WideNode<S, N>;
     const COPIES: bool = true;
 
@@ -113,33 +113,33 @@ impl<S: Scalar, const N: usize> Form<S, N> for Packed {
 
     #[inline(always)]
     fn prefetch(tree: &WideTree<S, N>, place: Reference) {
-        tree.blocks.prefetch(place.offset(), size_of::<WideNode<S, N>>());
+        tree.arena.prefetch(place.offset(), size_of::<WideNode<S, N>>());
     }
 
     #[inline(always)]
     unsafe fn indices(tree: &WideTree<S, N>, leaf: Reference, operands: usize) -> &[u32; LEAF_WIDTH] {
-        debug_assert_eq!(tree.form.operands, operands);
+        debug_assert_eq!(tree.encoding.operands, operands);
         // SAFETY: indices are any bytes, and a leaf lies there, by the caller's word. They follow its operands' rows.
-        unsafe { tree.blocks.get(leaf.offset() + operands * size_of::<[S; LEAF_WIDTH]>()) }
+        unsafe { tree.arena.get(leaf.offset() + operands * size_of::<[S; LEAF_WIDTH]>()) }
     }
 
     fn indices_at(tree: &WideTree<S, N>, leaf: Reference) -> Option<&[u32; LEAF_WIDTH]> {
-        let rows = tree.form.operands.checked_mul(size_of::<[S; LEAF_WIDTH]>())?;
+        let rows = tree.encoding.operands.checked_mul(size_of::<[S; LEAF_WIDTH]>())?;
         let offset = leaf.offset().checked_add(rows)?;
-        let fits = offset.checked_add(size_of::<[u32; LEAF_WIDTH]>())? <= tree.blocks.len();
+        let fits = offset.checked_add(size_of::<[u32; LEAF_WIDTH]>())? <= tree.arena.len();
         // SAFETY: indices are any bytes, and these lie inside of the blocks, at a multiple of eight.
-        fits.then(|| unsafe { tree.blocks.get(offset) })
+        fits.then(|| unsafe { tree.arena.get(offset) })
     }
 
     #[inline(always)]
     fn has(_: Reference, _: usize, index: u32) -> bool {
-        index != NOBODY
+        index != NO_PRIMITIVE
     }
 
     #[inline(always)]
     unsafe fn rows(tree: &WideTree<S, N>, leaf: Reference, operands: usize) -> &[[S; LEAF_WIDTH]] {
-        debug_assert_eq!(tree.form.operands, operands);
+        debug_assert_eq!(tree.encoding.operands, operands);
         // SAFETY: scalars are any bytes, and a leaf lies there, by the caller's word. It begins with its operands' rows.
-        unsafe { tree.blocks.get_slice(leaf.offset(), operands) }
+        unsafe { tree.arena.get_slice(leaf.offset(), operands) }
     }
 }

@@ -1,9 +1,9 @@
 //! What a collapse asks of a tree's form and of its primitives, by reference.
 
-use super::blocks::{Blocks, Part};
-use super::form::{Form, Node};
-use super::plan::LeafCost;
-use super::wide::{NOBODY, Reference};
+use super::collapse_cost::LeafCost;
+use super::encoding::{Encoding, Node};
+use super::node_arena::{NodeArena, Part};
+use super::wide::{NO_PRIMITIVE, Reference};
 use crate::geometry::{Aabb, Scalar};
 use crate::leaf::LEAF_WIDTH;
 
@@ -14,7 +14,7 @@ pub trait Contents<S>: Sync {
     fn put(&self, indices: &[u32], rows: &mut [[S; LEAF_WIDTH]]);
     /// The box of the primitive with an input index.
     fn aabb(&self, index: u32) -> Aabb<S>;
-    /// Asks for the primitive with an input index to be brought into the cache.
+    /// PackedQuery for the primitive with an input index to be brought into the cache.
     fn prefetch(&self, index: u32);
 }
 
@@ -38,7 +38,7 @@ type PutNode<S> = fn(&mut Part<'_>, usize, &[(Aabb<S>, Reference)]);
 
 impl<S: Scalar> Shape<S> {
     /// With so many operands of each primitive.
-    pub(super) fn of<const N: usize, F: Form<S, N>>(operands: usize) -> Self {
+    pub(super) fn of<const N: usize, F: Encoding<S, N>>(operands: usize) -> Self {
         Self {
             has_leaves: F::COPIES,
             operands,
@@ -58,7 +58,7 @@ impl<S: Scalar> Shape<S> {
             Kind::Leaf => {
                 let bytes = self.operands * size_of::<[S; LEAF_WIDTH]>() + size_of::<[u32; LEAF_WIDTH]>();
                 let align =
-                    if self.operands > 0 { size_of::<[S; LEAF_WIDTH]>().min(Blocks::ALIGN) } else { 32 };
+                    if self.operands > 0 { size_of::<[S; LEAF_WIDTH]>().min(NodeArena::ALIGN) } else { 32 };
                 (bytes, align)
             }
         }
@@ -74,7 +74,7 @@ impl<S: Scalar> Shape<S> {
     ) {
         // SAFETY: scalars are any bytes, and any bytes are some.
         contents.put(indices, unsafe { part.get_mut(offset, self.operands) });
-        let mut places = [NOBODY; LEAF_WIDTH];
+        let mut places = [NO_PRIMITIVE; LEAF_WIDTH];
         places[..indices.len()].copy_from_slice(indices);
         // SAFETY: integers are any bytes, and any bytes are some.
         unsafe { part.put(offset + self.operands * size_of::<[S; LEAF_WIDTH]>(), places) }

@@ -1,16 +1,16 @@
 //! The wide trees: nodes of up to N children, whose boxes are tested all at once, and leaves of up to 8 primitives.
 //!
 //! A node has rows of planes: x min, x max, y min, y max, z min, z max. The ray's sign chooses between rows of minima and of
-//! maxima, as an address. How planes and leaves are written is the tree's [`Form`].
+//! maxima, as an address. How planes and leaves are written is the tree's [`Encoding`].
 
-use super::blocks::Blocks;
 use super::compact::Compact;
-use super::form::{Form, Node};
+use super::encoding::{Encoding, Node};
+use super::node_arena::NodeArena;
 use super::packed::Packed;
+use crate::analysis::TreeReport;
 use crate::geometry::{Aabb, Scalar};
 use crate::leaf::LEAF_WIDTH;
 use crate::simd::Window;
-use crate::tree::TreeReport;
 use core::fmt;
 
 /// Where a block lies: its offset in units of 8 bytes, and bit 31 for leaves. A leaf that is no block: bit 31, its number of
@@ -36,22 +36,22 @@ impl Reference {
 
     const LEAF: u32 = 1 << 31;
     /// In blocks of this size, in bytes, and smaller ones every place has a reference.
-    pub(super) const LIMIT: usize = (Self::LEAF as usize).saturating_mul(Blocks::UNIT);
+    pub(super) const LIMIT: usize = (Self::LEAF as usize).saturating_mul(NodeArena::UNIT);
 
     /// None yet.
     pub(super) const NONE: Self = Self(0);
 
     pub(crate) fn node(offset: usize) -> Self {
-        Self((offset / Blocks::UNIT) as u32)
+        Self((offset / NodeArena::UNIT) as u32)
     }
 
     pub(crate) fn leaf(offset: usize) -> Self {
-        Self((offset / Blocks::UNIT) as u32 | Self::LEAF)
+        Self((offset / NodeArena::UNIT) as u32 | Self::LEAF)
     }
 
     /// The same so many bytes further on.
     pub(super) fn behind(self, bytes: usize) -> Self {
-        Self(self.0 + (bytes / Blocks::UNIT) as u32)
+        Self(self.0 + (bytes / NodeArena::UNIT) as u32)
     }
 
     #[inline(always)]
@@ -61,7 +61,7 @@ impl Reference {
 
     #[inline(always)]
     pub(super) fn offset(self) -> usize {
-        (self.0 & !Self::LEAF) as usize * Blocks::UNIT
+        (self.0 & !Self::LEAF) as usize * NodeArena::UNIT
     }
 
     /// Bits of a first slot.
@@ -86,14 +86,15 @@ impl Reference {
 ///
 /// At most 16 GiB. On 279,163 triangles of sponza it takes 61 bytes a triangle.
 ///
-/// 16 is the best that was found, with AVX-512 and with AVX2: see the README.
+/// 16 is the best width measured, with AVX-512 and with AVX2: see `docs/performance.md`, and
+/// `docs/decisions.md`, 5.
 ///
 /// Every reference that can be reached from the root refers to a node or a leaf inside of the tree: only
 /// `layout::collapse` writes any, for blocks that it has allocated and slots that there are.
 #[derive(Clone)]
 pub struct WideTree<S = f32, const N: usize = 16, F = Packed> {
-    pub(super) blocks: Blocks,
-    pub(super) form: F,
+    pub(super) arena: NodeArena,
+    pub(super) encoding: F,
     /// None for an empty tree.
     pub(super) root: Option<Reference>,
     pub(super) aabb: Aabb<S>,
@@ -135,22 +136,22 @@ pub struct WideTree<S = f32, const N: usize = 16, F = Packed> {
 pub type CompactTree<S = f32, const N: usize = 16> = WideTree<S, N, Compact>;
 
 /// No path through a tree leaves more children behind.
-pub(crate) const MAX_PENDING: usize = 448;
+pub(crate) const MAX_STACK: usize = 448;
 
 /// No primitive has this index.
-pub(crate) const NOBODY: u32 = u32::MAX;
+pub(crate) const NO_PRIMITIVE: u32 = u32::MAX;
 
 /// The same nodes and leaves in the same places.
-impl<S: Scalar, const N: usize, F: Form<S, N>> PartialEq for WideTree<S, N, F> {
+impl<S: Scalar, const N: usize, F: Encoding<S, N>> PartialEq for WideTree<S, N, F> {
     fn eq(&self, other: &Self) -> bool {
         self.root == other.root
             && self.aabb == other.aabb
-            && self.form == other.form
-            && self.blocks.words() == other.blocks.words()
+            && self.encoding == other.encoding
+            && self.arena.words() == other.arena.words()
     }
 }
 
-impl<S: Scalar, const N: usize, F: Form<S, N>> fmt::Debug for WideTree<S, N, F> {
+impl<S: Scalar, const N: usize, F: Encoding<S, N>> fmt::Debug for WideTree<S, N, F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("WideTree").field("report", &TreeReport::new(self)).finish_non_exhaustive()
     }
@@ -161,11 +162,11 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> fmt::Debug for WideTree<S, N, F> 
 /// not measured.
 const LARGE: usize = 4 << 20;
 
-impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
+impl<S: Scalar, const N: usize, F: Encoding<S, N>> WideTree<S, N, F> {
     /// Whether rays wait for memory, so that it pays to fetch ahead what they will need.
     #[inline(always)]
     pub(crate) fn is_large(&self) -> bool {
-        self.blocks.len() > LARGE
+        self.arena.len() > LARGE
     }
 
     /// Whether all coordinates are below `Scalar::LARGE_AREA`: then lanes may be tested.
@@ -177,13 +178,13 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
     /// Scalars of each primitive that lie in its leaf, or would be gathered.
     #[inline(always)]
     pub(crate) fn operands(&self) -> usize {
-        self.form.operands()
+        self.encoding.operands()
     }
 
     /// Whether leaves have so many of each primitive, or will have them gathered.
     #[inline(always)]
     pub(crate) fn has_operands(&self, operands: usize) -> bool {
-        self.form.has_operands(operands)
+        self.encoding.has_operands(operands)
     }
 
     /// # Safety
@@ -191,15 +192,15 @@ impl<S: Scalar, const N: usize, F: Form<S, N>> WideTree<S, N, F> {
     #[inline(always)]
     pub(crate) unsafe fn node(&self, reference: Reference) -> &F::Node {
         // SAFETY: nodes are any bytes, and one lies there, by the caller's word.
-        unsafe { self.blocks.get(reference.offset()) }
+        unsafe { self.arena.get(reference.offset()) }
     }
 
     /// The node at any place; none if there is no room for one.
     pub(super) fn node_at(&self, reference: Reference) -> Option<&F::Node> {
         let offset = reference.offset();
-        let fits = offset.checked_add(size_of::<F::Node>())? <= self.blocks.len()
+        let fits = offset.checked_add(size_of::<F::Node>())? <= self.arena.len()
             && offset.is_multiple_of(F::Node::ALIGN);
         // SAFETY: nodes are any bytes, and these lie inside of the blocks, aligned, as was just asked.
-        fits.then(|| unsafe { self.blocks.get(offset) })
+        fits.then(|| unsafe { self.arena.get(offset) })
     }
 }

@@ -1,7 +1,7 @@
 //! Triangles whose test is in `f64`, sieved in lanes of `f32`.
 
 use super::sealed::{Kernel, LeafKind};
-use super::triangles::{EdgeTests, RayFrame, barycentrics, details, largest, triangle};
+use super::triangles::{EdgeTests, TriangleFrame, barycentrics, details, largest, triangle};
 use super::{LaneHits, LaneTest, Operands, is_ahead_and_in_range};
 use crate::geometry::{Ray, Slabs};
 use crate::primitive::{Barycentrics, Precise, accept};
@@ -25,11 +25,11 @@ impl LeafKind<f32, Barycentrics> for PreciseLeaf {
 
 impl LaneTest<f32> for PreciseLeaf {
     const OPERANDS: usize = 9;
-    type Frame = RayFrame<f32>;
+    type Frame = TriangleFrame<f32>;
 
     #[inline(always)]
-    fn frame(ray: &Ray, slabs: &Slabs<f32>) -> RayFrame<f32> {
-        RayFrame::of(ray, slabs)
+    fn frame(ray: &Ray, slabs: &Slabs<f32>) -> TriangleFrame<f32> {
+        TriangleFrame::of(ray, slabs)
     }
 
     #[inline(always)]
@@ -45,7 +45,7 @@ impl LaneTest<f32> for PreciseLeaf {
     fn test<L: Lanes<f32>>(
         operands: &Operands<'_, f32, L>,
         _: &Ray,
-        frame: &RayFrame<f32>,
+        frame: &TriangleFrame<f32>,
         _: f32,
     ) -> LaneHits<L> {
         let EdgeTests { x, y, z, weights: [a, b, c], .. } = EdgeTests::new(operands, &frame.shear);

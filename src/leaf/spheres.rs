@@ -93,12 +93,12 @@ impl<S: Scalar, L: Lanes<S>> Quadratics<S, L> {
         let ([x, y, z], b, radius, zero) = (self.to_origin, self.b, operands.get(3), splat(S::ZERO));
         let root = splat(self.a.sqrt()) * self.discriminant.sqrt();
         let c = (x * x + y * y + z * z) - radius * radius;
-        let q = (b - root).where_else(b.lt(zero), b + root);
+        let q = (b - root).select(b.lt(zero), b + root);
         let (t0, t1) = (c / q, q / splat(self.a));
         let is_ordered = t0.le(t1);
-        let (first, last) = (t0.where_else(is_ordered, t1), t1.where_else(is_ordered, t0));
+        let (first, last) = (t0.select(is_ordered, t1), t1.select(is_ordered, t0));
         let includes = |t: L| splat(ray.t_min).le(t) & t.le(splat(ray.t_max));
-        let t = first.where_else(includes(first), last) + zero;
+        let t = first.select(includes(first), last) + zero;
         let limit = if limit < S::MAX { limit } else { S::MAX };
         let in_reach = self.is_hit & includes(t) & t.le(splat(limit));
         let ([nx, fx], [ny, fy], [nz, fz]) =

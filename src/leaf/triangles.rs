@@ -3,7 +3,7 @@
 
 use super::sealed::{Kernel, LeafKind};
 use super::{LaneHits, LaneTest, Operands, is_ahead_and_in_range};
-use crate::geometry::{Ray, Scalar, Shear, Slabs};
+use crate::geometry::{Ray, RayFrame, Scalar, Slabs};
 use crate::primitive::{Barycentrics, DOUBT, Fast, Triangle, Watertight, accept};
 use crate::simd::Lanes;
 use core::marker::PhantomData;
@@ -42,11 +42,11 @@ impl<S: Scalar> LeafKind<S, Barycentrics<S>> for WatertightLeaf {
 
 impl<S: Scalar> LaneTest<S> for FastLeaf {
     const OPERANDS: usize = 9;
-    type Frame = RayFrame<S>;
+    type Frame = TriangleFrame<S>;
 
     #[inline(always)]
-    fn frame(ray: &Ray<S>, slabs: &Slabs<S>) -> RayFrame<S> {
-        RayFrame::of(ray, slabs)
+    fn frame(ray: &Ray<S>, slabs: &Slabs<S>) -> TriangleFrame<S> {
+        TriangleFrame::of(ray, slabs)
     }
 
     #[inline(always)]
@@ -58,7 +58,7 @@ impl<S: Scalar> LaneTest<S> for FastLeaf {
     fn test<L: Lanes<S>>(
         operands: &Operands<'_, S, L>,
         ray: &Ray<S>,
-        frame: &RayFrame<S>,
+        frame: &TriangleFrame<S>,
         limit: S,
     ) -> LaneHits<L> {
         let tests = EdgeTests::new(operands, &frame.shear);
@@ -75,11 +75,11 @@ impl<S: Scalar> LaneTest<S> for FastLeaf {
 
 impl<S: Scalar> LaneTest<S> for WatertightLeaf {
     const OPERANDS: usize = 9;
-    type Frame = RayFrame<S>;
+    type Frame = TriangleFrame<S>;
 
     #[inline(always)]
-    fn frame(ray: &Ray<S>, slabs: &Slabs<S>) -> RayFrame<S> {
-        RayFrame::of(ray, slabs)
+    fn frame(ray: &Ray<S>, slabs: &Slabs<S>) -> TriangleFrame<S> {
+        TriangleFrame::of(ray, slabs)
     }
 
     #[inline(always)]
@@ -92,7 +92,7 @@ impl<S: Scalar> LaneTest<S> for WatertightLeaf {
     fn test<L: Lanes<S>>(
         operands: &Operands<'_, S, L>,
         ray: &Ray<S>,
-        frame: &RayFrame<S>,
+        frame: &TriangleFrame<S>,
         limit: S,
     ) -> LaneHits<L> {
         let tests = EdgeTests::new(operands, &frame.shear);
@@ -109,17 +109,17 @@ impl<S: Scalar> LaneTest<S> for WatertightLeaf {
 
 /// What triangles of all modes need of a ray.
 #[derive(Clone, Copy)]
-pub(crate) struct RayFrame<S> {
-    pub(super) shear: Shear<S>,
+pub(crate) struct TriangleFrame<S> {
+    pub(super) shear: RayFrame<S>,
     /// Of the slabs, on the frame's axes.
     inv_near: [S; 3],
     inv_far: [S; 3],
 }
 
-impl<S: Scalar> RayFrame<S> {
+impl<S: Scalar> TriangleFrame<S> {
     #[inline(always)]
     pub fn of(ray: &Ray<S>, &Slabs { inv_near, inv_far, .. }: &Slabs<S>) -> Self {
-        let shear = Shear::of(ray);
+        let shear = RayFrame::of(ray);
         let [i, j, k] = shear.axes;
         let (i, j, k) = (i.index(), j.index(), k.index());
         let inv_near = [inv_near[i], inv_near[j], inv_near[k]];
@@ -186,7 +186,7 @@ pub(super) struct EdgeTests<S: Scalar, L: Lanes<S>> {
 
 impl<S: Scalar, L: Lanes<S>> EdgeTests<S, L> {
     #[inline(always)]
-    pub fn new(operands: &Operands<'_, S, L>, shear: &Shear<S>) -> Self {
+    pub fn new(operands: &Operands<'_, S, L>, shear: &RayFrame<S>) -> Self {
         let [i, j, k] = shear.axes;
         let (i, j, k) = (i.index(), j.index(), k.index());
         let splat = |x: S| operands.splat(x);
@@ -206,7 +206,7 @@ impl<S: Scalar, L: Lanes<S>> EdgeTests<S, L> {
 
     #[inline(always)]
     fn frame(
-        shear: &Shear<S>,
+        shear: &RayFrame<S>,
         operands: &Operands<'_, S, L>,
         [x0, x1, x2]: [L; 3],
         [y0, y1, y2]: [L; 3],
@@ -227,7 +227,7 @@ impl<S: Scalar, L: Lanes<S>> EdgeTests<S, L> {
         &self,
         operands: &Operands<'_, S, L>,
         ray: &Ray<S>,
-        frame: &RayFrame<S>,
+        frame: &TriangleFrame<S>,
         limit: S,
         sure: L::Mask,
     ) -> LaneHits<L> {
@@ -263,7 +263,7 @@ impl<S: Scalar, L: Lanes<S>> EdgeTests<S, L> {
         &self,
         operands: &Operands<'_, S, L>,
         ray: &Ray<S>,
-        frame: &RayFrame<S>,
+        frame: &TriangleFrame<S>,
         t: L,
     ) -> L::Mask {
         let ([near_i, near_j, near_k], [far_i, far_j, far_k]) = (frame.inv_near, frame.inv_far);

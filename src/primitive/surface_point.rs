@@ -81,7 +81,7 @@ impl<S: Scalar> SurfacePoint<S> {
         let along = n[0] * direction[0] + n[1] * direction[1] + n[2] * direction[2];
         let distance = n[0].abs() * e[0] + n[1].abs() * e[1] + n[2].abs() * e[2];
         let origin = [0, 1, 2].map(|axis| {
-            let offset = (n[axis] * distance).turned_by(along);
+            let offset = (n[axis] * distance).xor_sign(along);
             let moved = self.position[axis] + offset;
             if offset > S::ZERO {
                 moved.next_up()

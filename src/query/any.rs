@@ -2,17 +2,17 @@
 
 use super::each::each;
 use crate::primitive::{Intersect, accept};
-use crate::traverse::{Ask, AskedLeaf, AskedRay};
+use crate::traverse::{LeafTest, LeafView, RayState};
 use core::ops::ControlFlow;
 
 /// Stops at the first hit.
-pub(super) struct AskAny<'a, P> {
+pub(super) struct AnyTest<'a, P> {
     pub primitives: &'a [P],
     pub is_hit: bool,
 }
 
-impl<P: Intersect> Ask<P::Scalar> for AskAny<'_, P> {
-    fn ask(&mut self, leaf: AskedLeaf<'_, P::Scalar>, ray: &mut AskedRay<P::Scalar>) -> ControlFlow<()> {
+impl<P: Intersect> LeafTest<P::Scalar> for AnyTest<'_, P> {
+    fn test(&mut self, leaf: LeafView<'_, P::Scalar>, ray: &mut RayState<P::Scalar>) -> ControlFlow<()> {
         each(self.primitives, leaf, ray, |primitive, _, ray| {
             if accept(primitive, &ray.ray, &ray.slabs).is_some() {
                 self.is_hit = true;

@@ -2,20 +2,20 @@
 
 use super::each::each;
 use super::{Hit, HitOf};
-use crate::layout::NOBODY;
+use crate::layout::NO_PRIMITIVE;
 use crate::leaf::sealed::LeafKind;
 use crate::primitive::{Intersect, accept};
-use crate::traverse::{Ask, AskedLeaf, AskedRay, Found};
+use crate::traverse::{Found, LeafTest, LeafView, RayState};
 use core::ops::ControlFlow;
 
 /// Keeps the payload of the closest hit so far, and narrows the ray to it.
-pub(super) struct AskClosest<'a, P: Intersect> {
+pub(super) struct ClosestTest<'a, P: Intersect> {
     pub primitives: &'a [P],
     pub payload: Option<P::Payload>,
 }
 
-impl<P: Intersect> Ask<P::Scalar> for AskClosest<'_, P> {
-    fn ask(&mut self, leaf: AskedLeaf<'_, P::Scalar>, ray: &mut AskedRay<P::Scalar>) -> ControlFlow<()> {
+impl<P: Intersect> LeafTest<P::Scalar> for ClosestTest<'_, P> {
+    fn test(&mut self, leaf: LeafView<'_, P::Scalar>, ray: &mut RayState<P::Scalar>) -> ControlFlow<()> {
         each(self.primitives, leaf, ray, |primitive, index, ray| {
             if let Some((t, payload)) = accept(primitive, &ray.ray, &ray.slabs)
                 && ray.is_closer(t, index)
@@ -28,10 +28,10 @@ impl<P: Intersect> Ask<P::Scalar> for AskClosest<'_, P> {
     }
 }
 
-impl<P: Intersect> AskClosest<'_, P> {
+impl<P: Intersect> ClosestTest<'_, P> {
     /// What was found, once the ray is at its end.
     #[inline(always)]
-    pub fn hit(self, ray: &AskedRay<P::Scalar>) -> Option<HitOf<P>> {
+    pub fn hit(self, ray: &RayState<P::Scalar>) -> Option<HitOf<P>> {
         self.payload.map(|payload| Hit { t: ray.ray.t_max, index: ray.index as usize, payload })
     }
 }
@@ -40,7 +40,7 @@ impl<P: Intersect> AskClosest<'_, P> {
 #[inline(always)]
 pub(super) fn hit_of<P: Intersect>(found: &Found<P::Scalar>) -> Option<HitOf<P>> {
     let &Found { t, index, details } = found;
-    if index == NOBODY {
+    if index == NO_PRIMITIVE {
         return None;
     }
     <P::Leaf as LeafKind<P::Scalar, P::Payload>>::payload(details).map(|payload| Hit {

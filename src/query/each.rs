@@ -4,16 +4,16 @@ use crate::geometry::Scalar;
 use crate::leaf::sealed::LeafKind;
 use crate::leaf::{GATHERED, LEAF_WIDTH, Primitives, PutOperands};
 use crate::primitive::Intersect;
-use crate::traverse::{AskedLeaf, AskedRay};
+use crate::traverse::{LeafView, RayState};
 use core::ops::ControlFlow;
 
 /// Shows the primitives of a leaf with their indices: all, or those that the type's sieve lets through, until `ask` breaks.
 #[inline(always)]
 pub(super) fn each<P: Intersect>(
     primitives: &[P],
-    leaf: AskedLeaf<'_, P::Scalar>,
-    ray: &mut AskedRay<P::Scalar>,
-    mut ask: impl FnMut(&P, u32, &mut AskedRay<P::Scalar>) -> ControlFlow<()>,
+    leaf: LeafView<'_, P::Scalar>,
+    ray: &mut RayState<P::Scalar>,
+    mut test: impl FnMut(&P, u32, &mut RayState<P::Scalar>) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let operands = const { <P::Leaf as LeafKind<P::Scalar, P::Payload>>::OPERANDS };
     // Leaves of the binary tree are of any length, and have no lanes.
@@ -26,30 +26,30 @@ pub(super) fn each<P: Intersect>(
             Primitives(primitives).put_rows(leaf.indices, rows);
             rows
         } else {
-            return all(primitives, leaf.indices, ray, ask);
+            return all(primitives, leaf.indices, ray, test);
         };
         ray.steps.primitives += leaf.indices.len() as u64;
         let lanes = <P::Leaf as LeafKind<P::Scalar, P::Payload>>::candidates(backend, rows, &ray.ray);
         for (lane, &index) in leaf.indices.iter().enumerate() {
             if lanes >> lane & 1 != 0 {
-                ask(&primitives[index as usize], index, ray)?;
+                test(&primitives[index as usize], index, ray)?;
             }
         }
         return ControlFlow::Continue(());
     }
-    all(primitives, leaf.indices, ray, ask)
+    all(primitives, leaf.indices, ray, test)
 }
 
 #[inline(always)]
 fn all<P: Intersect>(
     primitives: &[P],
     indices: &[u32],
-    ray: &mut AskedRay<P::Scalar>,
-    mut ask: impl FnMut(&P, u32, &mut AskedRay<P::Scalar>) -> ControlFlow<()>,
+    ray: &mut RayState<P::Scalar>,
+    mut test: impl FnMut(&P, u32, &mut RayState<P::Scalar>) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     for &index in indices {
         ray.steps.primitives += 1;
-        ask(&primitives[index as usize], index, ray)?;
+        test(&primitives[index as usize], index, ray)?;
     }
     ControlFlow::Continue(())
 }

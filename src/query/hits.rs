@@ -6,7 +6,7 @@ use crate::geometry::{Ray, Slabs};
 use crate::leaf::sealed::LeafKind;
 use crate::primitive::{Intersect, accept};
 use crate::simd::Backend;
-use crate::traverse::{Ask, AskedLeaf, AskedRay, BestFirst, Details, QueuedHit, Recorder};
+use crate::traverse::{BestFirst, Details, LeafTest, LeafView, QueuedHit, RayState, Recorder};
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
 
@@ -25,7 +25,7 @@ pub struct Hits<'a, P: Intersect, L: Traverse<P>, R = ()> {
     backend: Backend,
     ray: Ray<P::Scalar>,
     ahead: BestFirst<P::Scalar, L::Place>,
-    ask: AskAll<'a, P>,
+    leaf_test: AllTest<'a, P>,
     /// The last answer: a primitive that is in several leaves is met again, but is an answer once.
     last: Option<(P::Scalar, u32)>,
     recorder: R,
@@ -45,8 +45,8 @@ impl<'a, P: Intersect, L: Traverse<P>, R: Recorder> Hits<'a, P, L, R> {
             let entry = Slabs::new(ray).entry(&layout.aabb()).filter(|&entry| entry <= ray.t_max);
             root = layout.root().zip(entry);
         }
-        let (ahead, ask) = (BestFirst::new(root), AskAll { primitives, payloads: Vec::new() });
-        Self { layout, backend, ray: *ray, ahead, ask, last: None, recorder }
+        let (ahead, leaf_test) = (BestFirst::new(root), AllTest { primitives, payloads: Vec::new() });
+        Self { layout, backend, ray: *ray, ahead, leaf_test, last: None, recorder }
     }
 }
 
@@ -57,8 +57,8 @@ impl<P: Intersect, L: Traverse<P>, R: Recorder> Iterator for Hits<'_, P, L, R> {
     fn next(&mut self) -> Option<HitOf<P>> {
         loop {
             if !self.ahead.is_settled() {
-                let Self { layout, ray, ahead, ask, recorder, .. } = self;
-                let steps = layout.open_ahead(self.backend, ray, ahead, ask);
+                let Self { layout, ray, ahead, leaf_test, recorder, .. } = self;
+                let steps = layout.open_ahead(self.backend, ray, ahead, leaf_test);
                 if recorder.records() {
                     steps.tell(recorder);
                 }
@@ -70,7 +70,7 @@ impl<P: Intersect, L: Traverse<P>, R: Recorder> Iterator for Hits<'_, P, L, R> {
                     Details::OfLane(details) => {
                         <P::Leaf as LeafKind<P::Scalar, P::Payload>>::payload(details)?
                     }
-                    Details::Kept(number) => self.ask.payloads[number as usize],
+                    Details::Kept(number) => self.leaf_test.payloads[number as usize],
                 };
                 return Some(Hit { t, index: index as usize, payload });
             }
@@ -82,13 +82,13 @@ impl<P: Intersect, L: Traverse<P>, R: Recorder> core::iter::FusedIterator for Hi
 
 /// Keeps the payloads of all hits that were found.
 #[doc(hidden)]
-pub struct AskAll<'a, P: Intersect> {
+pub struct AllTest<'a, P: Intersect> {
     pub(super) primitives: &'a [P],
     payloads: Vec<P::Payload>,
 }
 
-impl<P: Intersect> Ask<P::Scalar> for AskAll<'_, P> {
-    fn ask(&mut self, leaf: AskedLeaf<'_, P::Scalar>, ray: &mut AskedRay<P::Scalar>) -> ControlFlow<()> {
+impl<P: Intersect> LeafTest<P::Scalar> for AllTest<'_, P> {
+    fn test(&mut self, leaf: LeafView<'_, P::Scalar>, ray: &mut RayState<P::Scalar>) -> ControlFlow<()> {
         each(self.primitives, leaf, ray, |primitive, index, ray| {
             if let Some((t, payload)) = accept(primitive, &ray.ray, &ray.slabs) {
                 ray.hits.push(QueuedHit::new(t, index, Details::Kept(self.payloads.len() as u32)));

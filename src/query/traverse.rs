@@ -1,16 +1,16 @@
 //! Queries of each layout: which kernel is asked, and what its answer is made into.
 
 use super::HitOf;
-use super::any::AskAny;
-use super::closest::{AskClosest, hit_of};
-use super::hits::AskAll;
+use super::any::AnyTest;
+use super::closest::{ClosestTest, hit_of};
+use super::hits::AllTest;
 use crate::geometry::{Ray, Scalar};
-use crate::layout::{Layout, NOBODY, WIDTH, WideTree};
+use crate::layout::{Layout, NO_PRIMITIVE, WIDTH, WideTree};
 use crate::leaf::Primitives;
 use crate::leaf::sealed::LeafKind;
 use crate::primitive::Intersect;
 use crate::simd::Backend;
-use crate::traverse::{AskedRay, BestFirst, Counters, FormKernels, Found, ScalarKernels};
+use crate::traverse::{BestFirst, Counters, EncodingKernels, Found, RayState, ScalarKernels};
 use crate::tree::Tree;
 
 /// A layout that rays can be traced through: all of them. Sealed.
@@ -61,7 +61,7 @@ pub trait Traverse<P: Intersect>: Layout<P> {
         backend: Backend,
         ray: &Ray<P::Scalar>,
         ahead: &mut BestFirst<P::Scalar, Self::Place>,
-        ask: &mut AskAll<'_, P>,
+        leaf_test: &mut AllTest<'_, P>,
     ) -> Counters;
 }
 
@@ -69,7 +69,7 @@ pub trait Traverse<P: Intersect>: Layout<P> {
 macro_rules! in_lanes {
     ($primitive:ty, $form:ty, $kernel:ident) => {
         const {
-            <$form as FormKernels<_>>::IN_LANES[<<$primitive as Intersect>::Leaf as LeafKind<
+            <$form as EncodingKernels<_>>::IN_LANES[<<$primitive as Intersect>::Leaf as LeafKind<
                 _,
                 <$primitive as Intersect>::Payload,
             >>::KERNEL as usize]
@@ -78,7 +78,7 @@ macro_rules! in_lanes {
     };
 }
 
-impl<P: Intersect, F: FormKernels<P::Scalar>> Traverse<P> for WideTree<P::Scalar, WIDTH, F> {
+impl<P: Intersect, F: EncodingKernels<P::Scalar>> Traverse<P> for WideTree<P::Scalar, WIDTH, F> {
     #[inline]
     fn closest_hit(&self, backend: Backend, primitives: &[P], ray: &Ray<P::Scalar>) -> Option<HitOf<P>> {
         if <P::Leaf as LeafKind<P::Scalar, P::Payload>>::IS_SETTLED_IN_LANES {
@@ -111,9 +111,10 @@ impl<P: Intersect, F: FormKernels<P::Scalar>> Traverse<P> for WideTree<P::Scalar
             let (found, steps) = in_lanes!(P, F, counted)(self, backend, put, ray, true);
             (hit_of::<P>(&found), steps)
         } else {
-            let (mut ray, mut ask) = (self.asked_ray(backend, ray), AskClosest { primitives, payload: None });
-            (const { F::ASKED.closest })(self, backend, &mut ray, &mut ask);
-            (ask.hit(&ray), ray.steps)
+            let (mut ray, mut leaf_test) =
+                (self.asked_ray(backend, ray), ClosestTest { primitives, payload: None });
+            (const { F::DYN.closest })(self, backend, &mut ray, &mut leaf_test);
+            (leaf_test.hit(&ray), ray.steps)
         }
     }
 
@@ -122,11 +123,12 @@ impl<P: Intersect, F: FormKernels<P::Scalar>> Traverse<P> for WideTree<P::Scalar
         if <P::Leaf as LeafKind<P::Scalar, P::Payload>>::IS_SETTLED_IN_LANES {
             let put = &Primitives(primitives);
             let (found, steps) = in_lanes!(P, F, counted)(self, backend, put, ray, false);
-            (found.index != NOBODY, steps)
+            (found.index != NO_PRIMITIVE, steps)
         } else {
-            let (mut ray, mut ask) = (self.asked_ray(backend, ray), AskAny { primitives, is_hit: false });
-            (const { F::ASKED.any })(self, backend, &mut ray, &mut ask);
-            (ask.is_hit, ray.steps)
+            let (mut ray, mut leaf_test) =
+                (self.asked_ray(backend, ray), AnyTest { primitives, is_hit: false });
+            (const { F::DYN.any })(self, backend, &mut ray, &mut leaf_test);
+            (leaf_test.is_hit, ray.steps)
         }
     }
 
@@ -135,21 +137,21 @@ impl<P: Intersect, F: FormKernels<P::Scalar>> Traverse<P> for WideTree<P::Scalar
         backend: Backend,
         ray: &Ray<P::Scalar>,
         ahead: &mut BestFirst<P::Scalar, Self::Place>,
-        ask: &mut AskAll<'_, P>,
+        leaf_test: &mut AllTest<'_, P>,
     ) -> Counters {
         if <P::Leaf as LeafKind<P::Scalar, P::Payload>>::IS_SETTLED_IN_LANES {
-            in_lanes!(P, F, open)(self, backend, &Primitives(ask.primitives), ray, ahead)
+            in_lanes!(P, F, open)(self, backend, &Primitives(leaf_test.primitives), ray, ahead)
         } else {
             let mut ray = self.asked_ray(backend, ray);
-            (const { F::ASKED.open })(self, backend, &mut ray, ask, ahead);
+            (const { F::DYN.open })(self, backend, &mut ray, leaf_test, ahead);
             ray.steps
         }
     }
 }
 
-impl<S: Scalar, F: FormKernels<S>> WideTree<S, WIDTH, F> {
-    fn asked_ray(&self, backend: Backend, ray: &Ray<S>) -> AskedRay<S> {
-        AskedRay { sieve: self.is_ordinary().then_some(backend), ..AskedRay::new(ray) }
+impl<S: Scalar, F: EncodingKernels<S>> WideTree<S, WIDTH, F> {
+    fn asked_ray(&self, backend: Backend, ray: &Ray<S>) -> RayState<S> {
+        RayState { sieve: self.is_ordinary().then_some(backend), ..RayState::new(ray) }
     }
 }
 
@@ -171,16 +173,16 @@ impl<P: Intersect> Traverse<P> for Tree<P::Scalar> {
         primitives: &[P],
         ray: &Ray<P::Scalar>,
     ) -> (Option<HitOf<P>>, Counters) {
-        let (mut ray, mut ask) = (AskedRay::new(ray), AskClosest { primitives, payload: None });
-        (const { P::Scalar::BINARY.closest })(self, backend, &mut ray, &mut ask);
-        (ask.hit(&ray), ray.steps)
+        let (mut ray, mut leaf_test) = (RayState::new(ray), ClosestTest { primitives, payload: None });
+        (const { P::Scalar::BINARY.closest })(self, backend, &mut ray, &mut leaf_test);
+        (leaf_test.hit(&ray), ray.steps)
     }
 
     #[inline]
     fn counted_any_hit(&self, backend: Backend, primitives: &[P], ray: &Ray<P::Scalar>) -> (bool, Counters) {
-        let (mut ray, mut ask) = (AskedRay::new(ray), AskAny { primitives, is_hit: false });
-        (const { P::Scalar::BINARY.any })(self, backend, &mut ray, &mut ask);
-        (ask.is_hit, ray.steps)
+        let (mut ray, mut leaf_test) = (RayState::new(ray), AnyTest { primitives, is_hit: false });
+        (const { P::Scalar::BINARY.any })(self, backend, &mut ray, &mut leaf_test);
+        (leaf_test.is_hit, ray.steps)
     }
 
     fn open_ahead(
@@ -188,10 +190,10 @@ impl<P: Intersect> Traverse<P> for Tree<P::Scalar> {
         backend: Backend,
         ray: &Ray<P::Scalar>,
         ahead: &mut BestFirst<P::Scalar, Self::Place>,
-        ask: &mut AskAll<'_, P>,
+        leaf_test: &mut AllTest<'_, P>,
     ) -> Counters {
-        let mut ray = AskedRay::new(ray);
-        (const { P::Scalar::BINARY.open })(self, backend, &mut ray, ask, ahead);
+        let mut ray = RayState::new(ray);
+        (const { P::Scalar::BINARY.open })(self, backend, &mut ray, leaf_test, ahead);
         ray.steps
     }
 }

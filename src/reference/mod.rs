@@ -7,7 +7,7 @@
 //!
 //! With the feature `exact`, the module `exact` answers for triangles without any rounding.
 //!
-//! An invalid primitive (see [`Flaw`](crate::Flaw)) is not hit, as in a tree that was told to skip
+//! An invalid primitive (see [`InvalidBox`](crate::InvalidBox)) is not hit, as in a tree that was told to skip
 //! such.
 //!
 //! ```
@@ -23,7 +23,7 @@
 #[cfg(feature = "exact")]
 pub mod exact;
 
-use crate::build::PrimRef;
+use crate::builders::PrimRef;
 use crate::geometry::{Ray, Slabs};
 use crate::primitive::{Intersect, accept, precedes};
 use crate::query::{Hit, HitOf};
@@ -87,6 +87,6 @@ fn all<'a, P: Intersect>(
     asked.iter().enumerate().filter_map(move |(index, primitive)| {
         recorder.primitive();
         let (t, payload) = accept(primitive, &ray, &slabs)?;
-        PrimRef::new(primitive.aabb(), 0).flaw().is_none().then_some(Hit { t, index, payload })
+        PrimRef::new(primitive.aabb(), 0).invalid_box().is_none().then_some(Hit { t, index, payload })
     })
 }

@@ -39,7 +39,7 @@ pub trait Lanes<S>:
     fn sqrt(self) -> Self;
     /// This lane where the mask is true, else `other`'s.
     #[must_use]
-    fn where_else(self, mask: Self::Mask, other: Self) -> Self;
+    fn select(self, mask: Self::Mask, other: Self) -> Self;
     /// `self < other`; false for NaN.
     fn lt(self, other: Self) -> Self::Mask;
     /// `self <= other`; false for NaN.

@@ -40,7 +40,7 @@ vector! {
     earlier(a, b) =
         vreinterpretq_f32_s32(vminq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
     not_after(a, b) = vcleq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b));
-    where_else(a, mask, b) = vbslq_f32(mask, a, b);
+    select(a, mask, b) = vbslq_f32(mask, a, b);
     and(a, b) = vandq_u32(a, b);
     or(a, b) = vorrq_u32(a, b);
     not(a) = vmvnq_u32(a);
@@ -71,7 +71,7 @@ vector! {
     later(a, b) = vbslq_f64(vcgtq_f64(a, b), a, b);
     earlier(a, b) = vbslq_f64(vcltq_f64(a, b), a, b);
     not_after(a, b) = vcleq_f64(a, b);
-    where_else(a, mask, b) = vbslq_f64(mask, a, b);
+    select(a, mask, b) = vbslq_f64(mask, a, b);
     and(a, b) = vandq_u64(a, b);
     or(a, b) = vorrq_u64(a, b);
     not(a) = veorq_u64(a, vdupq_n_u64(u64::MAX));

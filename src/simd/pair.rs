@@ -52,8 +52,8 @@ impl<S, L: Lanes<S>> Lanes<S> for Pair<L> {
         le(other) -> Self::Mask,
     }
     #[inline(always)]
-    fn where_else(self, mask: Self::Mask, other: Self) -> Self {
-        Self(self.0.where_else(mask.0, other.0), self.1.where_else(mask.1, other.1))
+    fn select(self, mask: Self::Mask, other: Self) -> Self {
+        Self(self.0.select(mask.0, other.0), self.1.select(mask.1, other.1))
     }
     #[inline(always)]
     fn bits(mask: Self::Mask) -> u32 {

@@ -44,7 +44,7 @@ macro_rules! four {
             later(a, b) = each!(k => if a[k] > b[k] { a[k] } else { b[k] });
             earlier(a, b) = each!(k => if a[k] < b[k] { a[k] } else { b[k] });
             not_after(a, b) = each!(k => a[k] <= b[k]);
-            where_else(a, mask, b) = each!(k => if mask[k] { a[k] } else { b[k] });
+            select(a, mask, b) = each!(k => if mask[k] { a[k] } else { b[k] });
             and(a, b) = each!(k => a[k] & b[k]);
             or(a, b) = each!(k => a[k] | b[k]);
             not(a) = each!(k => !a[k]);

@@ -37,7 +37,7 @@ vector! {
     later(a, b) = i32x4_max(a, b);
     earlier(a, b) = i32x4_min(a, b);
     not_after(a, b) = i32x4_le(a, b);
-    where_else(a, mask, b) = v128_bitselect(a, b, mask);
+    select(a, mask, b) = v128_bitselect(a, b, mask);
     and(a, b) = v128_and(a, b);
     or(a, b) = v128_or(a, b);
     not(a) = v128_not(a);
@@ -65,7 +65,7 @@ vector! {
     later(a, b) = f64x2_pmax(b, a);
     earlier(a, b) = f64x2_pmin(b, a);
     not_after(a, b) = f64x2_le(a, b);
-    where_else(a, mask, b) = v128_bitselect(a, b, mask);
+    select(a, mask, b) = v128_bitselect(a, b, mask);
     and(a, b) = v128_and(a, b);
     or(a, b) = v128_or(a, b);
     not(a) = v128_not(a);

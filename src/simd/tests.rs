@@ -119,8 +119,7 @@ fn computed<S: Scalar, L: Lanes<S>>(isa: L::Isa, operands: &Operands<S>) -> Resu
     }
     // SAFETY: sixteen bytes.
     let bytes = unsafe { L::load_bytes(isa, BYTES.as_ptr()) };
-    for vector in
-        [a, L::splat(isa, operands.a[0]), bytes, a.abs(), a.min(b), a.max(b), a.where_else(a.lt(b), c)]
+    for vector in [a, L::splat(isa, operands.a[0]), bytes, a.abs(), a.min(b), a.max(b), a.select(a.lt(b), c)]
     {
         results.moved.extend(lanes(vector));
     }

@@ -25,7 +25,7 @@ macro_rules! vector {
         later($later_a:ident, $later_b:ident) = $later:expr;
         earlier($earlier_a:ident, $earlier_b:ident) = $earlier:expr;
         not_after($after_a:ident, $after_b:ident) = $not_after:expr;
-        where_else($else_a:ident, $else_mask:ident, $else_b:ident) = $where_else:expr;
+        select($else_a:ident, $else_mask:ident, $else_b:ident) = $select:expr;
         and($and_a:ident, $and_b:ident) = $and:expr;
         or($or_a:ident, $or_b:ident) = $or:expr;
         not($not_a:ident) = $not:expr;
@@ -62,10 +62,10 @@ macro_rules! vector {
                 le($le_a, $le_b) -> $mask = $le;
             }
             #[inline(always)]
-            fn where_else(self, $else_mask: $mask, $else_b: Self) -> Self {
+            fn select(self, $else_mask: $mask, $else_b: Self) -> Self {
                 let ($else_a, $else_mask, $else_b) = (self.0, $else_mask.0, $else_b.0);
                 // SAFETY: the vector's token.
-                Self(unsafe { $where_else }, self.1)
+                Self(unsafe { $select }, self.1)
             }
             #[inline(always)]
             fn bits($bits_mask: $mask) -> u32 {

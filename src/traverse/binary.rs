@@ -15,7 +15,7 @@
 
 use super::best_first::BestFirst;
 use super::binary_stack::Stack;
-use super::seam::{Ask, AskedLeaf, AskedRay};
+use super::leaf_test::{LeafTest, LeafView, RayState};
 use crate::geometry::{Scalar, Slabs, max, min};
 use crate::simd::Lanes4;
 use crate::tree::{Child, MAX_DEPTH, Node, Tree};
@@ -31,8 +31,8 @@ struct Deferred<S> {
 #[inline(always)]
 pub(super) fn traverse<S: Scalar>(
     tree: &Tree<S>,
-    ray: &mut AskedRay<S>,
-    ask: &mut dyn Ask<S>,
+    ray: &mut RayState<S>,
+    leaf_test: &mut dyn LeafTest<S>,
 ) -> ControlFlow<()> {
     let slabs = ray.slabs;
     let mut child = match tree.root() {
@@ -44,7 +44,7 @@ pub(super) fn traverse<S: Scalar>(
     let mut stack = Stack::<Deferred<S>, MAX_DEPTH>::new(&mut memory);
     loop {
         if child.is_leaf() {
-            leaf(tree, child, ray, ask)?;
+            leaf(tree, child, ray, leaf_test)?;
         } else {
             ray.steps.nodes += 1;
             let node = &tree.nodes[child.first as usize];
@@ -86,12 +86,12 @@ pub(super) fn traverse<S: Scalar>(
 fn leaf<S: Scalar>(
     tree: &Tree<S>,
     leaf: Child,
-    ray: &mut AskedRay<S>,
-    ask: &mut dyn Ask<S>,
+    ray: &mut RayState<S>,
+    leaf_test: &mut dyn LeafTest<S>,
 ) -> ControlFlow<()> {
     let indices = &tree.indices[leaf.slots()];
     ray.steps.leaves += 1;
-    ask.ask(AskedLeaf { indices, rows: &[] }, ray)
+    leaf_test.test(LeafView { indices, rows: &[] }, ray)
 }
 
 /// Opens the boxes ahead of the ray, the nearest first, until nothing can come before the next hit.
@@ -99,15 +99,15 @@ fn leaf<S: Scalar>(
 pub(super) fn open<S: Scalar>(
     tree: &Tree<S>,
     ahead: &mut BestFirst<S, Child>,
-    ray: &mut AskedRay<S>,
-    ask: &mut dyn Ask<S>,
+    ray: &mut RayState<S>,
+    leaf_test: &mut dyn LeafTest<S>,
 ) {
     let slabs = ray.slabs;
     while let Some(child) = ahead.next_box() {
         if child.is_leaf() {
             ray.hits = core::mem::take(&mut ahead.hits);
             // Whatever it finds, all of the leaf is asked.
-            let _ = leaf(tree, child, ray, ask);
+            let _ = leaf(tree, child, ray, leaf_test);
             ahead.hits = core::mem::take(&mut ray.hits);
         } else {
             ray.steps.nodes += 1;

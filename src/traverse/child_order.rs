@@ -147,10 +147,10 @@ mod tests {
     use super::super::traversal_stack::Memory;
     use super::*;
     use crate::geometry::Aabb;
-    use crate::layout::{Form, Packed};
+    use crate::layout::{Encoding, Packed};
     use alloc::vec;
 
-    type Node = <Packed as Form<f32, 16>>::Node;
+    type Node = <Packed as Encoding<f32, 16>>::Node;
 
     /// Distances with ties and zeros, all sets of children of two and more, below what was there before.
     #[test]

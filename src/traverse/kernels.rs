@@ -7,15 +7,15 @@
 //! Where speed matters most, closest and any hits of packed trees, the leaf's test is inlined; all else has a loop that asks for
 //! each leaf, late-bound, so that there are as few loops as layouts, scalars and instruction sets make.
 
-use super::ask_lanes::{AskLanes, Wanted};
 use super::best_first::BestFirst;
 use super::box_test::is_ordinary;
+use super::lane_test::{LaneLeafTest, Wanted};
+use super::leaf_test::{LeafTest, RayState};
 use super::recorder::Counters;
-use super::seam::{Ask, AskedRay};
-use super::visitor::{Any, Asked, Found, InLanes, Query};
+use super::visitor::{Any, DynLeaves, Found, PackedLeaves, Query};
 use super::{binary, wide};
 use crate::geometry::{Ray, Scalar, Slabs};
-use crate::layout::{Compact, Form, NOBODY, Packed, Reference, WIDTH, WideTree};
+use crate::layout::{Compact, Encoding, NO_PRIMITIVE, Packed, Reference, WIDTH, WideTree};
 use crate::leaf::{FastLeaf, LaneTest, PreciseLeaf, PutOperands, SphereLeaf, WatertightLeaf};
 use crate::simd::{Backend, Isa, Kernel, LeafLanes, Routine};
 use crate::tree::{Child, Tree};
@@ -26,7 +26,7 @@ type Wide<S, F> = WideTree<S, WIDTH, F>;
 
 /// Kernels for leaves whose operands say all of their primitives.
 #[expect(clippy::type_complexity, reason = "a table of functions says what each takes")]
-pub struct LaneKernels<S, F> {
+pub struct PackedKernels<S, F> {
     pub closest: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>, &mut Found<S>),
     pub any: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>) -> bool,
     /// Boxes are opened until the next hit is known, of a valid ray.
@@ -41,36 +41,36 @@ pub type IsClosest = bool;
 
 /// Kernels for leaves that are asked.
 #[expect(clippy::type_complexity, reason = "a table of functions says what each takes")]
-pub struct AskKernels<S, L, B> {
-    pub closest: fn(&L, Backend, &mut AskedRay<S>, &mut dyn Ask<S>),
-    pub any: fn(&L, Backend, &mut AskedRay<S>, &mut dyn Ask<S>),
-    pub open: fn(&L, Backend, &mut AskedRay<S>, &mut dyn Ask<S>, &mut BestFirst<S, B>),
+pub struct DynKernels<S, L, B> {
+    pub closest: fn(&L, Backend, &mut RayState<S>, &mut dyn LeafTest<S>),
+    pub any: fn(&L, Backend, &mut RayState<S>, &mut dyn LeafTest<S>),
+    pub open: fn(&L, Backend, &mut RayState<S>, &mut dyn LeafTest<S>, &mut BestFirst<S, B>),
 }
 
 /// All kernels for a scalar.
 pub trait ScalarKernels: Sized {
     /// By `leaf::sealed::Kernel`.
-    const PACKED: [LaneKernels<Self, Packed>; 4];
-    const COMPACT: [LaneKernels<Self, Compact>; 4];
-    const PACKED_ASKED: AskKernels<Self, Wide<Self, Packed>, Reference>;
-    const COMPACT_ASKED: AskKernels<Self, Wide<Self, Compact>, Reference>;
-    const BINARY: AskKernels<Self, Tree<Self>, Child>;
+    const PACKED: [PackedKernels<Self, Packed>; 4];
+    const COMPACT: [PackedKernels<Self, Compact>; 4];
+    const PACKED_DYN: DynKernels<Self, Wide<Self, Packed>, Reference>;
+    const COMPACT_DYN: DynKernels<Self, Wide<Self, Compact>, Reference>;
+    const BINARY: DynKernels<Self, Tree<Self>, Child>;
 }
 
 /// The kernels of a form of wide trees.
-pub trait FormKernels<S: Scalar>: Form<S, WIDTH> {
-    const IN_LANES: [LaneKernels<S, Self>; 4];
-    const ASKED: AskKernels<S, Wide<S, Self>, Reference>;
+pub trait EncodingKernels<S: Scalar>: Encoding<S, WIDTH> {
+    const IN_LANES: [PackedKernels<S, Self>; 4];
+    const DYN: DynKernels<S, Wide<S, Self>, Reference>;
 }
 
-impl<S: Scalar> FormKernels<S> for Packed {
-    const IN_LANES: [LaneKernels<S, Self>; 4] = S::PACKED;
-    const ASKED: AskKernels<S, Wide<S, Self>, Reference> = S::PACKED_ASKED;
+impl<S: Scalar> EncodingKernels<S> for Packed {
+    const IN_LANES: [PackedKernels<S, Self>; 4] = S::PACKED;
+    const DYN: DynKernels<S, Wide<S, Self>, Reference> = S::PACKED_DYN;
 }
 
-impl<S: Scalar> FormKernels<S> for Compact {
-    const IN_LANES: [LaneKernels<S, Self>; 4] = S::COMPACT;
-    const ASKED: AskKernels<S, Wide<S, Self>, Reference> = S::COMPACT_ASKED;
+impl<S: Scalar> EncodingKernels<S> for Compact {
+    const IN_LANES: [PackedKernels<S, Self>; 4] = S::COMPACT;
+    const DYN: DynKernels<S, Wide<S, Self>, Reference> = S::COMPACT_DYN;
 }
 
 /// A query of one ray, the leaf's test inlined.
@@ -79,11 +79,11 @@ struct Inlined<'q, S, F, T, Q, K> {
 }
 
 /// The kernels with a late-bound test.
-trait Late<S, F>: 'static {
-    const KERNELS: LaneKernels<S, F>;
+trait Fallback<S, F>: 'static {
+    const KERNELS: PackedKernels<S, F>;
 }
 
-impl<'q, S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>, Q: Asks<S>, K: Late<S, F>> Routine
+impl<'q, S: Scalar, F: Encoding<S, WIDTH>, T: LaneTest<S>, Q: PackedQuery<S>, K: Fallback<S, F>> Routine
     for Inlined<'q, S, F, T, Q, K>
 {
     type A = &'q Wide<S, F>;
@@ -108,7 +108,7 @@ impl<'q, S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>, Q: Asks<S>, K: Late<S, F>
             return Self::run_otherwise(backend, tree, put, ray, room);
         }
         let slabs = Slabs::new(ray);
-        let mut visitor = InLanes::<S, T, Q, W>::new(ray, &slabs);
+        let mut visitor = PackedLeaves::<S, T, Q, W>::new(ray, &slabs);
         wide::traverse::<_, _, _, _, true>(isa, tree, ray, &slabs, is_ordinary, &mut visitor);
         visitor.query.answer(room)
     }
@@ -122,20 +122,20 @@ impl<'q, S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>, Q: Asks<S>, K: Late<S, F>
         ray: Self::C,
         room: Self::D,
     ) -> Q::Answer {
-        Q::ask(&K::KERNELS, tree, backend, put, ray, room)
+        Q::run_on(&K::KERNELS, tree, backend, put, ray, room)
     }
 }
 
 /// A query that can be put to a table of kernels.
-trait Asks<S: Scalar>: Query<S> {
+trait PackedQuery<S: Scalar>: Query<S> {
     /// Where the answer is written, if it is not returned.
     type Room<'q>;
     type Answer;
 
     fn answer(self, room: Self::Room<'_>) -> Self::Answer;
 
-    fn ask<F>(
-        kernels: &LaneKernels<S, F>,
+    fn run_on<F>(
+        kernels: &PackedKernels<S, F>,
         tree: &Wide<S, F>,
         backend: Backend,
         put: &dyn PutOperands<S>,
@@ -144,7 +144,7 @@ trait Asks<S: Scalar>: Query<S> {
     ) -> Self::Answer;
 }
 
-impl<S: Scalar> Asks<S> for Found<S> {
+impl<S: Scalar> PackedQuery<S> for Found<S> {
     type Room<'q> = &'q mut Self;
     type Answer = ();
 
@@ -153,8 +153,8 @@ impl<S: Scalar> Asks<S> for Found<S> {
         *room = self;
     }
 
-    fn ask<F>(
-        kernels: &LaneKernels<S, F>,
+    fn run_on<F>(
+        kernels: &PackedKernels<S, F>,
         tree: &Wide<S, F>,
         backend: Backend,
         put: &dyn PutOperands<S>,
@@ -165,7 +165,7 @@ impl<S: Scalar> Asks<S> for Found<S> {
     }
 }
 
-impl<S: Scalar> Asks<S> for Any<S> {
+impl<S: Scalar> PackedQuery<S> for Any<S> {
     type Room<'q> = ();
     type Answer = bool;
 
@@ -174,8 +174,8 @@ impl<S: Scalar> Asks<S> for Any<S> {
         self.is_hit
     }
 
-    fn ask<F>(
-        kernels: &LaneKernels<S, F>,
+    fn run_on<F>(
+        kernels: &PackedKernels<S, F>,
         tree: &Wide<S, F>,
         backend: Backend,
         put: &dyn PutOperands<S>,
@@ -188,7 +188,7 @@ impl<S: Scalar> Asks<S> for Any<S> {
 
 /// What makes it safe to test leaves as those of `T`.
 #[inline(always)]
-fn check_operands<S: Scalar, F: Form<S, WIDTH>, T: LaneTest<S>>(tree: &Wide<S, F>) {
+fn check_operands<S: Scalar, F: Encoding<S, WIDTH>, T: LaneTest<S>>(tree: &Wide<S, F>) {
     assert!(tree.has_operands(T::OPERANDS), "a tree is queried for what it was built of");
 }
 
@@ -200,70 +200,70 @@ fn suits<S: Scalar, T: LaneTest<S>>(ray: &Ray<S>) -> bool {
 }
 
 /// One ray, whose leaves are asked.
-struct AskWide<'q, S: Scalar, F: Form<S, WIDTH>, const IN_ORDER: bool> {
+struct DynWide<'q, S: Scalar, F: Encoding<S, WIDTH>, const IN_ORDER: bool> {
     tree: &'q Wide<S, F>,
-    ray: &'q mut AskedRay<S>,
-    ask: &'q mut dyn Ask<S>,
+    ray: &'q mut RayState<S>,
+    leaf_test: &'q mut dyn LeafTest<S>,
 }
 
-impl<S: Scalar, F: Form<S, WIDTH>, const IN_ORDER: bool> Kernel for AskWide<'_, S, F, IN_ORDER> {
+impl<S: Scalar, F: Encoding<S, WIDTH>, const IN_ORDER: bool> Kernel for DynWide<'_, S, F, IN_ORDER> {
     const IS_WIDE: bool = true;
     type Output = ();
 
     #[inline(always)]
     fn run<I: Isa>(self, isa: I) {
-        let Self { tree, ray, ask } = self;
+        let Self { tree, ray, leaf_test } = self;
         if !ray.ray.is_valid() {
             return;
         }
         ray.steps.rays += 1;
         let (start, slabs) = (ray.ray, ray.slabs);
         let is_ordinary = start.is_ordinary();
-        let mut visitor = Asked::<S, IN_ORDER> { ask, ray };
+        let mut visitor = DynLeaves::<S, IN_ORDER> { leaf_test, ray };
         wide::traverse::<_, _, _, _, false>(isa, tree, &start, &slabs, is_ordinary, &mut visitor);
     }
 }
 
 /// Boxes ahead of a valid ray, whose leaves are asked.
-struct OpenWide<'q, S: Scalar, F: Form<S, WIDTH>> {
+struct OpenWide<'q, S: Scalar, F: Encoding<S, WIDTH>> {
     tree: &'q Wide<S, F>,
-    ray: &'q mut AskedRay<S>,
-    ask: &'q mut dyn Ask<S>,
+    ray: &'q mut RayState<S>,
+    leaf_test: &'q mut dyn LeafTest<S>,
     ahead: &'q mut BestFirst<S, Reference>,
 }
 
-impl<S: Scalar, F: Form<S, WIDTH>> Kernel for OpenWide<'_, S, F> {
+impl<S: Scalar, F: Encoding<S, WIDTH>> Kernel for OpenWide<'_, S, F> {
     const IS_WIDE: bool = true;
     type Output = ();
 
     #[inline(always)]
     fn run<I: Isa>(self, isa: I) {
-        let Self { tree, ray, ask, ahead } = self;
-        wide::open(isa, tree, ahead, &mut Asked { ask, ray });
+        let Self { tree, ray, leaf_test, ahead } = self;
+        wide::open(isa, tree, ahead, &mut DynLeaves { leaf_test, ray });
     }
 }
 
 /// A query of one ray whose leaves are tested by a late-bound call.
 #[inline(always)]
-fn ask_lanes<S: Scalar, F: FormKernels<S>, T: LaneTest<S>>(
+fn with_lane_test<S: Scalar, F: EncodingKernels<S>, T: LaneTest<S>>(
     tree: &Wide<S, F>,
     isa: Backend,
     put: &dyn PutOperands<S>,
     ray: &Ray<S>,
     wanted: Wanted,
-    kernel: impl FnOnce(&mut AskedRay<S>, &mut dyn Ask<S>),
+    kernel: impl FnOnce(&mut RayState<S>, &mut dyn LeafTest<S>),
 ) -> (Found<S>, Counters) {
     check_operands::<S, F, T>(tree);
-    let mut asked = AskedRay::new(ray);
+    let mut asked = RayState::new(ray);
     if ray.is_valid() {
         let suits = tree.is_ordinary() && T::suits(ray);
-        kernel(&mut asked, &mut AskLanes::<S, T>::new(put, wanted, suits.then_some(isa)));
+        kernel(&mut asked, &mut LaneLeafTest::<S, T>::new(put, wanted, suits.then_some(isa)));
     }
     (Found { t: asked.ray.t_max, index: asked.index, details: asked.details }, asked.steps)
 }
 
 /// The part of the kernels in lanes that asks, for a scalar, a form and a test.
-macro_rules! late {
+macro_rules! dynamic {
     ($scalar:ty, $form:ty, $test:ty) => {{
         type Tree = Wide<$scalar, $form>;
         type Put<'a> = &'a dyn PutOperands<$scalar>;
@@ -274,7 +274,7 @@ macro_rules! late {
         }
         #[inline(never)]
         fn any(tree: &Tree, isa: Backend, put: Put<'_>, ray: &Ray<$scalar>) -> bool {
-            counted(tree, isa, put, ray, false).0.index != NOBODY
+            counted(tree, isa, put, ray, false).0.index != NO_PRIMITIVE
         }
         #[inline(never)]
         fn open(
@@ -284,8 +284,8 @@ macro_rules! late {
             ray: &Ray<$scalar>,
             ahead: &mut BestFirst<$scalar, Reference>,
         ) -> Counters {
-            ask_lanes::<_, $form, $test>(tree, isa, put, ray, Wanted::All, |ray, ask| {
-                (<$form as FormKernels<$scalar>>::ASKED.open)(tree, isa, ray, ask, ahead);
+            with_lane_test::<_, $form, $test>(tree, isa, put, ray, Wanted::All, |ray, leaf_test| {
+                (<$form as EncodingKernels<$scalar>>::DYN.open)(tree, isa, ray, leaf_test, ahead);
             })
             .1
         }
@@ -297,12 +297,14 @@ macro_rules! late {
             ray: &Ray<$scalar>,
             is_closest: IsClosest,
         ) -> (Found<$scalar>, Counters) {
-            const KERNELS: AskKernels<$scalar, Tree, Reference> = <$form as FormKernels<$scalar>>::ASKED;
+            const KERNELS: DynKernels<$scalar, Tree, Reference> = <$form as EncodingKernels<$scalar>>::DYN;
             let (wanted, kernel) =
                 if is_closest { (Wanted::Closest, KERNELS.closest) } else { (Wanted::Any, KERNELS.any) };
-            ask_lanes::<_, $form, $test>(tree, isa, put, ray, wanted, |ray, ask| kernel(tree, isa, ray, ask))
+            with_lane_test::<_, $form, $test>(tree, isa, put, ray, wanted, |ray, leaf_test| {
+                kernel(tree, isa, ray, leaf_test)
+            })
         }
-        LaneKernels { closest, any, open, counted }
+        PackedKernels { closest, any, open, counted }
     }};
 }
 
@@ -311,48 +313,48 @@ macro_rules! inlined {
     ($scalar:ty, $form:ty, $test:ty) => {{
         type Tree = Wide<$scalar, $form>;
         type Put<'a> = &'a dyn PutOperands<$scalar>;
-        struct Asked;
-        impl Late<$scalar, $form> for Asked {
-            const KERNELS: LaneKernels<$scalar, $form> = late!($scalar, $form, $test);
+        struct Dynamic;
+        impl Fallback<$scalar, $form> for Dynamic {
+            const KERNELS: PackedKernels<$scalar, $form> = dynamic!($scalar, $form, $test);
         }
 
         #[inline(never)]
         fn closest(tree: &Tree, isa: Backend, put: Put<'_>, ray: &Ray<$scalar>, found: &mut Found<$scalar>) {
-            isa.call::<Inlined<'_, $scalar, $form, $test, Found<$scalar>, Asked>>(tree, put, ray, found);
+            isa.call::<Inlined<'_, $scalar, $form, $test, Found<$scalar>, Dynamic>>(tree, put, ray, found);
         }
         #[inline(never)]
         fn any(tree: &Tree, isa: Backend, put: Put<'_>, ray: &Ray<$scalar>) -> bool {
-            isa.call::<Inlined<'_, $scalar, $form, $test, Any<$scalar>, Asked>>(tree, put, ray, ())
+            isa.call::<Inlined<'_, $scalar, $form, $test, Any<$scalar>, Dynamic>>(tree, put, ray, ())
         }
-        LaneKernels { closest, any, ..<Asked as Late<_, _>>::KERNELS }
+        PackedKernels { closest, any, ..<Dynamic as Fallback<_, _>>::KERNELS }
     }};
 }
 
 /// Kernels for a scalar and a form that ask.
-macro_rules! asked {
+macro_rules! dyn_leaves {
     ($scalar:ty, $form:ty) => {{
         type Tree = Wide<$scalar, $form>;
-        type Asks<'a> = &'a mut dyn Ask<$scalar>;
+        type Test<'a> = &'a mut dyn LeafTest<$scalar>;
 
         #[inline(never)]
-        fn closest(tree: &Tree, isa: Backend, ray: &mut AskedRay<$scalar>, ask: Asks<'_>) {
-            isa.run(AskWide::<_, _, true> { tree, ray, ask });
+        fn closest(tree: &Tree, isa: Backend, ray: &mut RayState<$scalar>, leaf_test: Test<'_>) {
+            isa.run(DynWide::<_, _, true> { tree, ray, leaf_test });
         }
         #[inline(never)]
-        fn any(tree: &Tree, isa: Backend, ray: &mut AskedRay<$scalar>, ask: Asks<'_>) {
-            isa.run(AskWide::<_, _, false> { tree, ray, ask });
+        fn any(tree: &Tree, isa: Backend, ray: &mut RayState<$scalar>, leaf_test: Test<'_>) {
+            isa.run(DynWide::<_, _, false> { tree, ray, leaf_test });
         }
         #[inline(never)]
         fn open(
             tree: &Tree,
             isa: Backend,
-            ray: &mut AskedRay<$scalar>,
-            ask: Asks<'_>,
+            ray: &mut RayState<$scalar>,
+            leaf_test: Test<'_>,
             ahead: &mut BestFirst<$scalar, Reference>,
         ) {
-            isa.run(OpenWide { tree, ray, ask, ahead });
+            isa.run(OpenWide { tree, ray, leaf_test, ahead });
         }
-        AskKernels { closest, any, open }
+        DynKernels { closest, any, open }
     }};
 }
 
@@ -360,59 +362,59 @@ macro_rules! asked {
 macro_rules! binary {
     ($scalar:ty) => {{
         type T = Tree<$scalar>;
-        type Asks<'a> = &'a mut dyn Ask<$scalar>;
+        type Test<'a> = &'a mut dyn LeafTest<$scalar>;
 
         #[inline(never)]
-        fn closest(tree: &T, _: Backend, ray: &mut AskedRay<$scalar>, ask: Asks<'_>) {
+        fn closest(tree: &T, _: Backend, ray: &mut RayState<$scalar>, leaf_test: Test<'_>) {
             if ray.ray.is_valid() {
                 ray.steps.rays += 1;
-                let _ = binary::traverse(tree, ray, ask);
+                let _ = binary::traverse(tree, ray, leaf_test);
             }
         }
         #[inline(never)]
         fn open(
             tree: &T,
             _: Backend,
-            ray: &mut AskedRay<$scalar>,
-            ask: Asks<'_>,
+            ray: &mut RayState<$scalar>,
+            leaf_test: Test<'_>,
             ahead: &mut BestFirst<$scalar, Child>,
         ) {
-            binary::open(tree, ahead, ray, ask);
+            binary::open(tree, ahead, ray, leaf_test);
         }
         // Nearer children first, whatever is asked.
-        AskKernels { closest, any: closest, open }
+        DynKernels { closest, any: closest, open }
     }};
 }
 
 impl ScalarKernels for f32 {
-    const PACKED: [LaneKernels<Self, Packed>; 4] = [
+    const PACKED: [PackedKernels<Self, Packed>; 4] = [
         inlined!(f32, Packed, FastLeaf),
         inlined!(f32, Packed, WatertightLeaf),
-        late!(f32, Packed, PreciseLeaf),
+        dynamic!(f32, Packed, PreciseLeaf),
         inlined!(f32, Packed, SphereLeaf),
     ];
-    const COMPACT: [LaneKernels<Self, Compact>; 4] = [
-        late!(f32, Compact, FastLeaf),
-        late!(f32, Compact, WatertightLeaf),
-        late!(f32, Compact, PreciseLeaf),
-        late!(f32, Compact, SphereLeaf),
+    const COMPACT: [PackedKernels<Self, Compact>; 4] = [
+        dynamic!(f32, Compact, FastLeaf),
+        dynamic!(f32, Compact, WatertightLeaf),
+        dynamic!(f32, Compact, PreciseLeaf),
+        dynamic!(f32, Compact, SphereLeaf),
     ];
-    const PACKED_ASKED: AskKernels<Self, Wide<Self, Packed>, Reference> = asked!(f32, Packed);
-    const COMPACT_ASKED: AskKernels<Self, Wide<Self, Compact>, Reference> = asked!(f32, Compact);
-    const BINARY: AskKernels<Self, Tree, Child> = binary!(f32);
+    const PACKED_DYN: DynKernels<Self, Wide<Self, Packed>, Reference> = dyn_leaves!(f32, Packed);
+    const COMPACT_DYN: DynKernels<Self, Wide<Self, Compact>, Reference> = dyn_leaves!(f32, Compact);
+    const BINARY: DynKernels<Self, Tree, Child> = binary!(f32);
 }
 
 /// `f64` has no `Precise` triangles: in their place are the watertight ones.
 impl ScalarKernels for f64 {
-    const PACKED: [LaneKernels<Self, Packed>; 4] = {
-        const WATERTIGHT: LaneKernels<f64, Packed> = inlined!(f64, Packed, WatertightLeaf);
-        [inlined!(f64, Packed, FastLeaf), WATERTIGHT, WATERTIGHT, late!(f64, Packed, SphereLeaf)]
+    const PACKED: [PackedKernels<Self, Packed>; 4] = {
+        const WATERTIGHT: PackedKernels<f64, Packed> = inlined!(f64, Packed, WatertightLeaf);
+        [inlined!(f64, Packed, FastLeaf), WATERTIGHT, WATERTIGHT, dynamic!(f64, Packed, SphereLeaf)]
     };
-    const COMPACT: [LaneKernels<Self, Compact>; 4] = {
-        const WATERTIGHT: LaneKernels<f64, Compact> = late!(f64, Compact, WatertightLeaf);
-        [late!(f64, Compact, FastLeaf), WATERTIGHT, WATERTIGHT, late!(f64, Compact, SphereLeaf)]
+    const COMPACT: [PackedKernels<Self, Compact>; 4] = {
+        const WATERTIGHT: PackedKernels<f64, Compact> = dynamic!(f64, Compact, WatertightLeaf);
+        [dynamic!(f64, Compact, FastLeaf), WATERTIGHT, WATERTIGHT, dynamic!(f64, Compact, SphereLeaf)]
     };
-    const PACKED_ASKED: AskKernels<Self, Wide<Self, Packed>, Reference> = asked!(f64, Packed);
-    const COMPACT_ASKED: AskKernels<Self, Wide<Self, Compact>, Reference> = asked!(f64, Compact);
-    const BINARY: AskKernels<Self, Tree<f64>, Child> = binary!(f64);
+    const PACKED_DYN: DynKernels<Self, Wide<Self, Packed>, Reference> = dyn_leaves!(f64, Packed);
+    const COMPACT_DYN: DynKernels<Self, Wide<Self, Compact>, Reference> = dyn_leaves!(f64, Compact);
+    const BINARY: DynKernels<Self, Tree<f64>, Child> = binary!(f64);
 }

@@ -5,25 +5,25 @@
 //! query --> kernel: nodes by box_test and child_order, deferred ones on the traversal_stack
 //!             at a leaf, a visitor:
 //!               settled in lanes   the leaf's own test (leaf::LaneTest)
-//!               asked              one late-bound call for all of the leaf's primitives (seam::Ask)
+//!               asked              one late-bound call for all of the leaf's primitives (seam::LeafTest)
 //! query <-- t, index, and the details that the payload is made of
 //! ```
 
-mod ask_lanes;
 mod best_first;
 mod binary;
 mod binary_stack;
 mod box_test;
 mod child_order;
 mod kernels;
+mod lane_test;
+mod leaf_test;
 mod recorder;
-mod seam;
 mod traversal_stack;
 mod visitor;
 mod wide;
 
 pub(crate) use best_first::{BestFirst, Details, QueuedHit};
-pub use kernels::{FormKernels, ScalarKernels};
+pub use kernels::{EncodingKernels, ScalarKernels};
+pub(crate) use leaf_test::{LeafTest, LeafView, RayState};
 pub use recorder::{Counters, Recorder};
-pub(crate) use seam::{Ask, AskedLeaf, AskedRay};
 pub(crate) use visitor::Found;

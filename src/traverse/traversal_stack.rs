@@ -1,11 +1,11 @@
 //! The stack of a wide traversal: what was met and is still to be visited.
 
-use crate::layout::{MAX_PENDING, Reference};
+use crate::layout::{MAX_STACK, Reference};
 use crate::simd::Window;
 use core::mem::MaybeUninit;
 
 /// With room for all lanes of one more node, of which some are written and not kept.
-const CAPACITY: usize = MAX_PENDING + 16;
+const CAPACITY: usize = MAX_STACK + 16;
 
 /// Memory for [`TraversalStack`], on the thread's stack and not cleared. For `f32` it is below a page: above, every query
 /// would first touch it page by page.
@@ -45,7 +45,7 @@ impl<'m, S: Copy + PartialOrd> TraversalStack<'m, S> {
     #[inline(always)]
     pub fn push(&mut self, reference: Reference, entry: S) {
         debug_assert!(self.len < CAPACITY);
-        // SAFETY: a path leaves at most `MAX_PENDING` behind, by construction of the tree.
+        // SAFETY: a path leaves at most `MAX_STACK` behind, by construction of the tree.
         unsafe {
             self.memory.references.get_unchecked_mut(self.len).write(reference);
             self.memory.entries.get_unchecked_mut(self.len).write(entry);
@@ -56,8 +56,8 @@ impl<'m, S: Copy + PartialOrd> TraversalStack<'m, S> {
     /// Room for the lanes of a node above what is there; `grow` keeps some.
     #[inline(always)]
     pub fn windows(&mut self) -> (&mut Window<Reference>, &mut Window<S>) {
-        debug_assert!(self.len <= MAX_PENDING);
-        // SAFETY: `len` is at most `MAX_PENDING`, by construction of the tree: 16 more are inside.
+        debug_assert!(self.len <= MAX_STACK);
+        // SAFETY: `len` is at most `MAX_STACK`, by construction of the tree: 16 more are inside.
         unsafe {
             (
                 &mut *self.memory.references.as_mut_ptr().add(self.len).cast(),

@@ -1,9 +1,9 @@
 //! What a query does at a leaf of a wide tree.
 
 use super::child_order::next_lane;
-use super::seam::{Ask, AskedLeaf, AskedRay};
+use super::leaf_test::{LeafTest, LeafView, RayState};
 use crate::geometry::{Ray, Scalar, Slabs};
-use crate::layout::{Form, NOBODY, Reference, WideTree};
+use crate::layout::{Encoding, NO_PRIMITIVE, Reference, WideTree};
 use crate::leaf::{LEAF_WIDTH, LaneHits, LaneTest, Operands, operands_of};
 use crate::primitive::precedes;
 use crate::simd::{Count, Isa, Lanes, LeafLanes, Width};
@@ -26,7 +26,7 @@ pub(super) trait Visitor<S: Scalar> {
     ///
     /// # Safety
     /// `leaf` is one of the tree's leaves.
-    unsafe fn leaf<I: Isa, F: Form<S, N>, const N: usize>(
+    unsafe fn leaf<I: Isa, F: Encoding<S, N>, const N: usize>(
         &mut self,
         isa: I,
         tree: &WideTree<S, N, F>,
@@ -54,7 +54,7 @@ pub(super) trait Query<S: Scalar>: Copy {
 pub struct Found<S> {
     /// The end of the ray's interval if there is none.
     pub t: S,
-    /// [`NOBODY`] if there is none.
+    /// [`NO_PRIMITIVE`] if there is none.
     pub index: u32,
     /// What the payload is made of.
     pub details: [S; 3],
@@ -63,7 +63,7 @@ pub struct Found<S> {
 impl<S: Scalar> Found<S> {
     #[inline(always)]
     pub fn none(t_max: S) -> Self {
-        Self { t: t_max, index: NOBODY, details: [S::ZERO; 3] }
+        Self { t: t_max, index: NO_PRIMITIVE, details: [S::ZERO; 3] }
     }
 }
 
@@ -117,7 +117,7 @@ impl<S: Scalar> Query<S> for Any<S> {
 }
 
 /// Leaves that have operands which say all of their primitives.
-pub(super) struct InLanes<'q, S: Scalar, T: LaneTest<S>, Q, W> {
+pub(super) struct PackedLeaves<'q, S: Scalar, T: LaneTest<S>, Q, W> {
     ray: &'q Ray<S>,
     slabs: &'q Slabs<S>,
     pub query: Q,
@@ -126,14 +126,14 @@ pub(super) struct InLanes<'q, S: Scalar, T: LaneTest<S>, Q, W> {
     lanes: PhantomData<W>,
 }
 
-impl<'q, S: Scalar, T: LaneTest<S>, Q: Query<S>, W> InLanes<'q, S, T, Q, W> {
+impl<'q, S: Scalar, T: LaneTest<S>, Q: Query<S>, W> PackedLeaves<'q, S, T, Q, W> {
     #[inline(always)]
     pub fn new(ray: &'q Ray<S>, slabs: &'q Slabs<S>) -> Self {
         Self { ray, slabs, query: Q::of(ray), frame: None, lanes: PhantomData }
     }
 }
 
-impl<S: Scalar, T: LaneTest<S>, Q: Query<S>, W: LeafLanes> Visitor<S> for InLanes<'_, S, T, Q, W> {
+impl<S: Scalar, T: LaneTest<S>, Q: Query<S>, W: LeafLanes> Visitor<S> for PackedLeaves<'_, S, T, Q, W> {
     const IN_ORDER: bool = Q::IN_ORDER;
 
     #[inline(always)]
@@ -142,7 +142,7 @@ impl<S: Scalar, T: LaneTest<S>, Q: Query<S>, W: LeafLanes> Visitor<S> for InLane
     }
 
     #[inline(always)]
-    unsafe fn leaf<I: Isa, F: Form<S, N>, const N: usize>(
+    unsafe fn leaf<I: Isa, F: Encoding<S, N>, const N: usize>(
         &mut self,
         isa: I,
         tree: &WideTree<S, N, F>,
@@ -172,7 +172,7 @@ impl<S: Scalar, T: LaneTest<S>, Q: Query<S>, W: LeafLanes> Visitor<S> for InLane
     }
 }
 
-impl<S: Scalar, T: LaneTest<S>, Q: Query<S>, W> InLanes<'_, S, T, Q, W> {
+impl<S: Scalar, T: LaneTest<S>, Q: Query<S>, W> PackedLeaves<'_, S, T, Q, W> {
     #[inline(always)]
     fn settled<L: Lanes<S>>(&mut self, hits: &LaneHits<L>, indices: &[u32; LEAF_WIDTH]) -> ControlFlow<()> {
         let mut lanes = hits.settled;
@@ -210,12 +210,12 @@ fn decide<S: Scalar, T: LaneTest<S>, Q: Query<S>>(
 }
 
 /// Leaves whose primitives are asked.
-pub(super) struct Asked<'q, S: Scalar, const IN_ORDER: bool> {
-    pub ask: &'q mut dyn Ask<S>,
-    pub ray: &'q mut AskedRay<S>,
+pub(super) struct DynLeaves<'q, S: Scalar, const IN_ORDER: bool> {
+    pub leaf_test: &'q mut dyn LeafTest<S>,
+    pub ray: &'q mut RayState<S>,
 }
 
-impl<S: Scalar, const IN_ORDER: bool> Visitor<S> for Asked<'_, S, IN_ORDER> {
+impl<S: Scalar, const IN_ORDER: bool> Visitor<S> for DynLeaves<'_, S, IN_ORDER> {
     const IN_ORDER: bool = IN_ORDER;
 
     #[inline(always)]
@@ -229,7 +229,7 @@ impl<S: Scalar, const IN_ORDER: bool> Visitor<S> for Asked<'_, S, IN_ORDER> {
     }
 
     #[inline(always)]
-    unsafe fn leaf<I: Isa, F: Form<S, N>, const N: usize>(
+    unsafe fn leaf<I: Isa, F: Encoding<S, N>, const N: usize>(
         &mut self,
         _: I,
         tree: &WideTree<S, N, F>,
@@ -244,6 +244,6 @@ impl<S: Scalar, const IN_ORDER: bool> Visitor<S> for Asked<'_, S, IN_ORDER> {
         let count =
             indices.iter().enumerate().take_while(|&(lane, &index)| F::has(leaf, lane, index)).count();
         self.ray.steps.leaves += 1;
-        self.ask.ask(AskedLeaf { indices: &indices[..count], rows }, self.ray)
+        self.leaf_test.test(LeafView { indices: &indices[..count], rows }, self.ray)
     }
 }

@@ -14,16 +14,16 @@ use super::best_first::BestFirst;
 use super::box_test::BoxTest;
 use super::child_order::{Distances, last, nearest, next_lane};
 use super::traversal_stack::{Memory, TraversalStack};
-use super::visitor::{Asked, Visitor};
+use super::visitor::{DynLeaves, Visitor};
 use crate::geometry::{Aabb, Ray, Scalar, Slabs};
-use crate::layout::{Form, Outline, Reference, WideNode, WideTree};
+use crate::layout::{Encoding, Outline, Reference, WideNode, WideTree};
 use crate::simd::{Count, Isa, KernelLanes, Width};
 use core::mem::take;
 
 /// Shows `visitor` the leaves whose boxes a valid ray meets, until it breaks. `is_ordinary` is what the ray says;
 /// if `AHEAD` its t_min is not negative.
 #[inline(always)]
-pub(super) fn traverse<S: Scalar, I: Isa, F: Form<S, N>, const N: usize, const AHEAD: bool>(
+pub(super) fn traverse<S: Scalar, I: Isa, F: Encoding<S, N>, const N: usize, const AHEAD: bool>(
     isa: I,
     tree: &WideTree<S, N, F>,
     ray: &Ray<S>,
@@ -47,11 +47,11 @@ pub(super) fn traverse<S: Scalar, I: Isa, F: Form<S, N>, const N: usize, const A
 /// Opens the boxes ahead of a valid ray, the nearest first, until nothing can come before the next hit. Hits of leaves are in
 /// `ray.hits` until the leaf's end.
 #[inline(always)]
-pub(super) fn open<S: Scalar, I: Isa, F: Form<S, N>, const N: usize>(
+pub(super) fn open<S: Scalar, I: Isa, F: Encoding<S, N>, const N: usize>(
     isa: I,
     tree: &WideTree<S, N, F>,
     ahead: &mut BestFirst<S, Reference>,
-    visitor: &mut Asked<'_, S, true>,
+    visitor: &mut DynLeaves<'_, S, true>,
 ) where
     Count<N>: Width,
 {
@@ -85,7 +85,7 @@ pub(super) fn open<S: Scalar, I: Isa, F: Form<S, N>, const N: usize>(
 
 /// Where a ray begins, if it has to.
 #[inline(always)]
-fn first<S: Scalar, F: Form<S, N>, const N: usize>(
+fn first<S: Scalar, F: Encoding<S, N>, const N: usize>(
     tree: &WideTree<S, N, F>,
     ray: &Ray<S>,
     limit: S,
@@ -113,7 +113,7 @@ type Row<S, I, const N: usize> = <Count<N> as Width>::Lanes<S, I>;
 /// `place` is one of the tree's nodes or leaves, and so are those on the stack.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "a loop's state, in registers")]
-unsafe fn step<S: Scalar, I: Isa, V: Visitor<S>, F: Form<S, N>, const N: usize, const AHEAD: bool>(
+unsafe fn step<S: Scalar, I: Isa, V: Visitor<S>, F: Encoding<S, N>, const N: usize, const AHEAD: bool>(
     isa: I,
     tree: &WideTree<S, N, F>,
     place: Reference,
@@ -154,11 +154,11 @@ where
     next
 }
 
-/// Asks for what will be popped next but for what the next step pushes: it has that step's time to come. On an Intel Xeon
+/// PackedQuery for what will be popped next but for what the next step pushes: it has that step's time to come. On an Intel Xeon
 /// closest hits were 1.00 to 1.05 times as quick (random rays 1.04 to 1.14), any hits 0.98 to 1.05, in trees of 13 to 17 MB. In
 /// trees that the cache holds they are as much slower on a Zen 5 machine.
 #[inline(always)]
-fn fetch_top<S: Scalar, F: Form<S, N>, const N: usize>(
+fn fetch_top<S: Scalar, F: Encoding<S, N>, const N: usize>(
     fetches: bool,
     tree: &WideTree<S, N, F>,
     stack: &TraversalStack<'_, S>,

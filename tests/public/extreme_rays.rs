@@ -110,7 +110,7 @@ fn subnormal_components_beside_ordinary_ones<M: Mode>() {
     let triangles = triangles::<M::Number>(&soup(60), |_, x| x * 4.0);
     let scene: Vec<_> = triangles.iter().copied().map(M::of).collect();
     let zeros: Vec<_> = aimed(&triangles).into_iter().skip(3).step_by(4).collect();
-    let subnormal = |x: M::Number| if x == M::Number::ZERO { least.turned_by(x) } else { x };
+    let subnormal = |x: M::Number| if x == M::Number::ZERO { least.xor_sign(x) } else { x };
     let rays: Vec<_> =
         zeros.iter().map(|ray| Ray { direction: ray.direction.map(subnormal), ..*ray }).collect();
     // Through corners, where the least step aside may decide.

@@ -5,7 +5,9 @@ use crate::common::aimed::{aimed, soup, triangles};
 use crate::common::answers::{Answers, Payload};
 use crate::common::in_every_mode::in_every_mode;
 use crate::common::modes::Mode;
-use bvhkit::{Aabb, BuildError, Bvh, Flaw, Intersect, OnInvalid, Primitive, Ray, Scalar, Sphere, Triangle};
+use bvhkit::{
+    Aabb, BuildError, Bvh, Intersect, InvalidBox, OnInvalid, Primitive, Ray, Scalar, Sphere, Triangle,
+};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -14,7 +16,7 @@ use rand_pcg::Pcg64Mcg;
 fn assert_rejected_or_skipped<P: Intersect<Payload: Payload> + Clone>(
     good: &[P],
     bad: &P,
-    flaw: Flaw,
+    flaw: InvalidBox,
     rays: &[Ray<P::Scalar>],
 ) {
     for index in [0, good.len() / 2, good.len()] {
@@ -40,10 +42,10 @@ fn a_nan_or_an_infinity_in_any_corner_of_a_triangle<M: Mode>() {
     let good: Vec<_> = triangles.iter().copied().map(M::of).collect();
     let rays = aimed(&triangles);
     let flaws = [
-        (f64::NAN, Flaw::NanBox),
-        (-f64::NAN, Flaw::NanBox),
-        (f64::INFINITY, Flaw::InfiniteBox),
-        (f64::NEG_INFINITY, Flaw::InfiniteBox),
+        (f64::NAN, InvalidBox::NanBox),
+        (-f64::NAN, InvalidBox::NanBox),
+        (f64::INFINITY, InvalidBox::InfiniteBox),
+        (f64::NEG_INFINITY, InvalidBox::InfiniteBox),
     ];
     for (bad, flaw) in flaws {
         for place in 0..9 {
@@ -66,7 +68,7 @@ fn spheres_and_boxes() {
     let spheres: Vec<_> = soup(20).iter().map(|[a, ..]| Sphere::new(a.map(|x| x as f32), 0.25)).collect();
     let boxes: Vec<_> = spheres.iter().map(Primitive::aabb).collect();
     // A minimum above its maximum is named first, infinite or not.
-    let (nan, infinite, inverted) = (Flaw::NanBox, Flaw::InfiniteBox, Flaw::InvertedBox);
+    let (nan, infinite, inverted) = (InvalidBox::NanBox, InvalidBox::InfiniteBox, InvalidBox::InvertedBox);
     for (bad, flaw, as_min, as_max, as_radius) in [
         (f32::NAN, nan, nan, nan, nan),
         (f32::INFINITY, infinite, inverted, infinite, infinite),
@@ -81,11 +83,11 @@ fn spheres_and_boxes() {
         }
         assert_rejected_or_skipped(&spheres, &Sphere::new([0.0; 3], bad), as_radius, &rays);
     }
-    assert_rejected_or_skipped(&spheres, &Sphere::new([0.0; 3], -1.0), Flaw::InvertedBox, &rays);
+    assert_rejected_or_skipped(&spheres, &Sphere::new([0.0; 3], -1.0), InvalidBox::InvertedBox, &rays);
     assert_rejected_or_skipped(
         &boxes,
         &Aabb::new([0.0, 1.0, 0.0], [1.0, 0.5, 1.0]),
-        Flaw::InvertedBox,
+        InvalidBox::InvertedBox,
         &rays,
     );
 }

@@ -45,7 +45,7 @@ mod many_rays;
 mod properties;
 mod random_bits;
 mod real_files;
-mod seam;
+mod safe_arguments;
 mod spawn;
 mod splits;
 mod trees;

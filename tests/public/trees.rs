@@ -3,8 +3,8 @@
 use crate::common::heuristics;
 use bvhkit::heuristic::{BinnedSah, BuildNode, Clustered, Heuristic, Median, Morton, SpatialSah, Split};
 use bvhkit::{
-    Aabb, Axis, BuildError, Bvh, Fast, Hit, MAX_DEPTH, Optimise, Pace, PrimRef, Quality, Ray, Tree, Triangle,
-    reference,
+    Aabb, Axis, BuildControl, BuildError, Bvh, Fast, Hit, MAX_DEPTH, Optimise, PrimRef, Quality, Ray, Tree,
+    Triangle, reference,
 };
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -116,10 +116,10 @@ fn progress_goes_from_0_to_1() {
         let seen = Arc::clone(&seen);
         move |progress| {
             seen.lock().unwrap().push(progress);
-            Pace::Steady
+            BuildControl::Steady
         }
     };
-    Bvh::builder().threads(1).watch(watcher).build(triangles(50_000)).unwrap();
+    Bvh::builder().threads(1).progress(watcher).build(triangles(50_000)).unwrap();
     let seen = seen.lock().unwrap();
     assert!(seen.len() > 10 && seen.is_sorted(), "{seen:?}");
     assert_eq!((seen[0], seen[seen.len() - 1]), (0.0, 1.0));
@@ -128,15 +128,16 @@ fn progress_goes_from_0_to_1() {
 #[test]
 fn a_build_stops_when_it_is_told_to() {
     for limit in [0.0, 0.5, 1.0] {
-        let watcher = move |progress| if progress >= limit { Pace::Stop } else { Pace::Steady };
-        let error = Bvh::builder().watch(watcher).build(triangles(50_000)).unwrap_err();
+        let watcher =
+            move |progress| if progress >= limit { BuildControl::Stop } else { BuildControl::Steady };
+        let error = Bvh::builder().progress(watcher).build(triangles(50_000)).unwrap_err();
         assert_eq!(error, BuildError::Stopped, "at {limit}");
     }
 }
 
 /// Says `pace` from a progress on.
-fn from(limit: f64, pace: Pace) -> impl Fn(f64) -> Pace + Send + Sync + 'static {
-    move |progress| if progress >= limit { pace } else { Pace::Steady }
+fn from(limit: f64, pace: BuildControl) -> impl Fn(f64) -> BuildControl + Send + Sync + 'static {
+    move |progress| if progress >= limit { pace } else { BuildControl::Steady }
 }
 
 #[test]
@@ -144,7 +145,7 @@ fn a_build_in_a_hurry_is_coarser_and_answers_alike() {
     let triangles = triangles(50_000);
     let builder = || Bvh::builder().heuristic(BinnedSah::default()).threads(1).layout::<Tree>();
     let hurried = |limit: f64| {
-        let bvh = builder().watch(from(limit, Pace::Hurry)).build(&triangles).unwrap();
+        let bvh = builder().progress(from(limit, BuildControl::Hurry)).build(&triangles).unwrap();
         bvh.check().unwrap();
         bvh
     };
@@ -156,7 +157,7 @@ fn a_build_in_a_hurry_is_coarser_and_answers_alike() {
     let out_of_time = builder().time_budget(Duration::ZERO).build(&triangles).unwrap();
     assert!(out_of_time.layout() == sorted.layout(), "no time at all");
     for limit in [0.0, 0.3] {
-        assert_answers(&triangles[..20_000], Bvh::builder().watch(from(limit, Pace::Hurry)));
+        assert_answers(&triangles[..20_000], Bvh::builder().progress(from(limit, BuildControl::Hurry)));
     }
 }
 
@@ -167,10 +168,10 @@ fn a_hurry_below_a_long_path_keeps_the_depth_bound() {
     let asked = Arc::new(AtomicUsize::new(0));
     let watcher = {
         let asked = Arc::clone(&asked);
-        move |_| if asked.fetch_add(1, Relaxed) < 40 { Pace::Steady } else { Pace::Hurry }
+        move |_| if asked.fetch_add(1, Relaxed) < 40 { BuildControl::Steady } else { BuildControl::Hurry }
     };
     let builder = Bvh::builder().heuristic(Stubborn(|_| Split::Count { axis: Axis::X, left: 1 }));
-    let bvh = builder.threads(1).max_leaf_size(1).watch(watcher).layout::<Tree>().build(triangles).unwrap();
+    let bvh = builder.threads(1).max_leaf_size(1).progress(watcher).layout::<Tree>().build(triangles).unwrap();
     bvh.check().unwrap();
     let depth = bvh.report().max_depth;
     assert!(depth > 50 && depth <= MAX_DEPTH, "{depth}");
@@ -181,12 +182,13 @@ fn a_build_in_a_hurry_is_not_optimised_and_may_still_be_stopped() {
     let triangles = triangles(20_000);
     let builder = || Bvh::builder().threads(1).layout::<Tree>();
     let plain = builder().optimise(Optimise::NONE).build(&triangles).unwrap();
-    let hurried = builder().watch(from(1.0, Pace::Hurry)).build(&triangles).unwrap();
+    let hurried = builder().progress(from(1.0, BuildControl::Hurry)).build(&triangles).unwrap();
     assert!(hurried.layout() == plain.layout());
     assert!(hurried.layout() != builder().build(&triangles).unwrap().layout());
     let asked = AtomicUsize::new(0);
-    let watcher = move |_| if asked.fetch_add(1, Relaxed) == 0 { Pace::Hurry } else { Pace::Stop };
-    assert_eq!(builder().watch(watcher).build(&triangles).unwrap_err(), BuildError::Stopped);
+    let watcher =
+        move |_| if asked.fetch_add(1, Relaxed) == 0 { BuildControl::Hurry } else { BuildControl::Stop };
+    assert_eq!(builder().progress(watcher).build(&triangles).unwrap_err(), BuildError::Stopped);
 }
 
 #[test]
@@ -196,10 +198,10 @@ fn optimisation_asks_on() {
         let asked = Arc::clone(&asked);
         move |progress| {
             let done = progress >= 1.0 && asked.fetch_add(1, Relaxed) > 20;
-            if done { Pace::Stop } else { Pace::Steady }
+            if done { BuildControl::Stop } else { BuildControl::Steady }
         }
     };
-    let builder = Bvh::builder().optimise(Optimise { share: 0.5, rounds: 9 }).watch(watcher);
+    let builder = Bvh::builder().optimise(Optimise { share: 0.5, rounds: 9 }).progress(watcher);
     assert_eq!(builder.build(triangles(20_000)).unwrap_err(), BuildError::Stopped);
 }
 
@@ -318,6 +320,6 @@ fn an_absurd_growth_is_bounded() {
         let bvh = Bvh::builder().heuristic(heuristic).build(triangles(500)).unwrap();
         bvh.check().unwrap();
         assert!(bvh.report().references <= 500 * (1 + SpatialSah::MAX_GROWTH as usize));
-        assert!(Heuristic::<f32>::spare(&heuristic, 1000) <= 4000, "{growth}");
+        assert!(Heuristic::<f32>::extra_references(&heuristic, 1000) <= 4000, "{growth}");
     }
 }

@@ -3,7 +3,7 @@
 use super::sheared::sheared;
 use super::watertight::{bounds, exact_bounds, watertight, watertight_widest};
 use super::{Barycentrics, Corners};
-use crate::geometry::{Aabb, Ray, Scalar, ScalarParts, Shear};
+use crate::geometry::{Aabb, Ray, RayFrame, Scalar, ScalarParts};
 use crate::leaf::{FastLeaf, PreciseLeaf, WatertightLeaf};
 use crate::primitive::{Intersect, Primitive};
 
@@ -12,7 +12,7 @@ use crate::primitive::{Intersect, Primitive};
 /// A ray aimed at a corner, or at an edge of a sliver, may slip between triangles that meet there, or
 /// be told of a hit a rounding beside one. Products of three lengths are computed: coordinates and
 /// distances are good from about 1e-12 to 1e12 in `f32`, 1e-100 to 1e100 in `f64`; beyond, hits are lost.
-/// The README has the rates, and what is gained by it.
+/// `docs/accuracy.md` has the rates and the gain.
 ///
 /// ```
 /// use bvhkit::{Bvh, Fast, Triangle};
@@ -107,7 +107,7 @@ impl<P: Corners> Intersect for Fast<P> {
 
     #[inline(always)]
     fn intersect(&self, ray: &Ray<P::Scalar>) -> Option<(P::Scalar, Barycentrics<P::Scalar>)> {
-        sheared(self.0.corners(), &Shear::of(ray)).filter(|&(t, _)| ray.includes(t))
+        sheared(self.0.corners(), &RayFrame::of(ray)).filter(|&(t, _)| ray.includes(t))
     }
 
     #[inline(always)]
@@ -186,7 +186,7 @@ impl<P: Corners<Scalar = f32>> Intersect for Precise<P> {
         let [a, b, c] = self.0.corners();
         let widen = |[x, y, z]: [f32; 3]| [x.widen(), y.widen(), z.widen()];
         let corners = [widen(a), widen(b), widen(c)];
-        let (t, Barycentrics { u, v }) = watertight_widest(corners, &Shear::widened(ray))?;
+        let (t, Barycentrics { u, v }) = watertight_widest(corners, &RayFrame::widened(ray))?;
         let (t, u, v) = (t as f32, u as f32, v as f32);
         ray.includes(t).then_some((t, Barycentrics { u, v }))
     }

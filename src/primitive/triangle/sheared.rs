@@ -1,7 +1,7 @@
 //! The ray test in the ray's frame, without a second look.
 
 use super::Barycentrics;
-use crate::geometry::{Scalar, Shear, cross, dot, max, min};
+use crate::geometry::{RayFrame, Scalar, cross, dot, max, min};
 
 /// t and the weights of the ray's hit with a triangle (Woop, Benthin and Wald, Watertight Ray/Triangle
 /// Intersection, JCGT 2013): in the ray's frame, where the ray is the third axis, its point lies in
@@ -14,7 +14,7 @@ use crate::geometry::{Scalar, Shear, cross, dot, max, min};
 /// 2016), which takes twice the memory (1 to 30 % slower). Three lanes for three corners suit one
 /// triangle at a time best.
 #[inline(always)]
-pub(super) fn sheared<S: Scalar>(corners: [[S; 3]; 3], shear: &Shear<S>) -> Option<(S, Barycentrics<S>)> {
+pub(super) fn sheared<S: Scalar>(corners: [[S; 3]; 3], shear: &RayFrame<S>) -> Option<(S, Barycentrics<S>)> {
     // Without area, t is NaN and no hit.
     Sight::new(corners, shear).map(|sight| sight.hit(shear))
 }
@@ -33,7 +33,7 @@ pub(super) struct Sight<S: Scalar> {
 impl<S: Scalar> Sight<S> {
     /// None if the ray passes outside.
     #[inline(always)]
-    pub fn new(corners: [[S; 3]; 3], shear: &Shear<S>) -> Option<Self> {
+    pub fn new(corners: [[S; 3]; 3], shear: &RayFrame<S>) -> Option<Self> {
         let [x, y, z] = shear.apply(corners);
         let weights = cross(x, y);
         if is_outside(weights) {
@@ -45,7 +45,7 @@ impl<S: Scalar> Sight<S> {
 
     /// t and the weights.
     #[inline(always)]
-    pub fn hit(&self, shear: &Shear<S>) -> (S, Barycentrics<S>) {
+    pub fn hit(&self, shear: &RayFrame<S>) -> (S, Barycentrics<S>) {
         let Self { weights: [_, b, c], area, volume, .. } = *self;
         (shear.t(volume / area), Barycentrics { u: b / area, v: c / area })
     }

@@ -16,7 +16,7 @@
 
 use super::Barycentrics;
 use super::sheared::{Sight, is_outside};
-use crate::geometry::{Aabb, Ray, Scalar, Shear, cross, dot, max, min};
+use crate::geometry::{Aabb, Ray, RayFrame, Scalar, cross, dot, max, min};
 
 /// As [`sheared`], but what rounding leaves open is computed once more in the wide scalar: a difference that is
 /// zero, as Woop, Benthin and Wald do; an area out of the range; and t where its sign is in doubt, so that a
@@ -25,7 +25,7 @@ use crate::geometry::{Aabb, Ray, Scalar, Shear, cross, dot, max, min};
 /// There is none wider than `f64`: see [`watertight_widest`].
 #[inline(always)]
 pub(super) fn watertight<S: Scalar>(corners: [[S; 3]; 3], ray: &Ray<S>) -> Option<(S, Barycentrics<S>)> {
-    let shear = &Shear::of(ray);
+    let shear = &RayFrame::of(ray);
     if S::IS_WIDEST {
         return watertight_widest(corners, shear);
     }
@@ -51,7 +51,7 @@ fn is_within<S: Scalar>(x: S, large: S) -> bool {
 #[inline(always)]
 pub(super) fn watertight_widest<S: Scalar>(
     corners: [[S; 3]; 3],
-    shear: &Shear<S>,
+    shear: &RayFrame<S>,
 ) -> Option<(S, Barycentrics<S>)> {
     let sight = Sight::new(corners, shear)?;
     if is_sure(&sight) {
@@ -130,13 +130,13 @@ fn settle<S: Scalar>(xy: [[S; 3]; 2], corners: [[S; 3]; 3], ray: &Ray<S>) -> Opt
     if is_outside([a, b, c]) || area == S::Wide::ZERO || !area.is_finite() {
         return None;
     }
-    let shear = Shear::widened(ray);
+    let shear = RayFrame::widened(ray);
     let t = shear.t(plane_depth(corners.map(widen), &shear));
     Some((S::narrow(t), Barycentrics { u: S::narrow(b / area), v: S::narrow(c / area) }))
 }
 
 /// The third coordinate at which the ray meets the triangle's plane, but no farther than the corners'.
-fn plane_depth<S: Scalar>(corners: [[S; 3]; 3], shear: &Shear<S>) -> S {
+fn plane_depth<S: Scalar>(corners: [[S; 3]; 3], shear: &RayFrame<S>) -> S {
     let [x, y, z] = shear.apply(corners);
     let weights = cross(x, y);
     let [a, b, c] = weights;

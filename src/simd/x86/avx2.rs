@@ -100,7 +100,7 @@ vector! {
         let (a, b) = (_mm_castps_si128(a), _mm_castps_si128(b));
         _mm_castsi128_ps(_mm_cmpeq_epi32(_mm_min_epi32(a, b), a))
     };
-    where_else(a, mask, b) = _mm_blendv_ps(b, a, mask);
+    select(a, mask, b) = _mm_blendv_ps(b, a, mask);
     and(a, b) = _mm_and_ps(a, b);
     or(a, b) = _mm_or_ps(a, b);
     not(a) = _mm_xor_ps(a, _mm_castsi128_ps(_mm_set1_epi32(-1)));
@@ -141,7 +141,7 @@ vector! {
         let (a, b) = (_mm256_castps_si256(a), _mm256_castps_si256(b));
         _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_min_epi32(a, b), a))
     };
-    where_else(a, mask, b) = _mm256_blendv_ps(b, a, mask);
+    select(a, mask, b) = _mm256_blendv_ps(b, a, mask);
     and(a, b) = _mm256_and_ps(a, b);
     or(a, b) = _mm256_or_ps(a, b);
     not(a) = _mm256_xor_ps(a, _mm256_castsi256_ps(_mm256_set1_epi32(-1)));
@@ -172,7 +172,7 @@ vector! {
     later(a, b) = _mm256_max_pd(a, b);
     earlier(a, b) = _mm256_min_pd(a, b);
     not_after(a, b) = _mm256_cmp_pd::<_CMP_LE_OQ>(a, b);
-    where_else(a, mask, b) = _mm256_blendv_pd(b, a, mask);
+    select(a, mask, b) = _mm256_blendv_pd(b, a, mask);
     and(a, b) = _mm256_and_pd(a, b);
     or(a, b) = _mm256_or_pd(a, b);
     not(a) = _mm256_xor_pd(a, _mm256_castsi256_pd(_mm256_set1_epi32(-1)));

@@ -105,7 +105,7 @@ vector! {
     later(a, b) = _mm_castsi128_ps(_mm_max_epi32(_mm_castps_si128(a), _mm_castps_si128(b)));
     earlier(a, b) = _mm_castsi128_ps(_mm_min_epi32(_mm_castps_si128(a), _mm_castps_si128(b)));
     not_after(a, b) = _mm_cmple_epi32_mask(_mm_castps_si128(a), _mm_castps_si128(b));
-    where_else(a, mask, b) = _mm_mask_blend_ps(mask, b, a);
+    select(a, mask, b) = _mm_mask_blend_ps(mask, b, a);
     and(a, b) = a & b;
     or(a, b) = a | b;
     not(a) = !a;
@@ -141,7 +141,7 @@ vector! {
     later(a, b) = _mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
     earlier(a, b) = _mm256_castsi256_ps(_mm256_min_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
     not_after(a, b) = _mm256_cmple_epi32_mask(_mm256_castps_si256(a), _mm256_castps_si256(b));
-    where_else(a, mask, b) = _mm256_mask_blend_ps(mask, b, a);
+    select(a, mask, b) = _mm256_mask_blend_ps(mask, b, a);
     and(a, b) = a & b;
     or(a, b) = a | b;
     not(a) = !a;
@@ -169,7 +169,7 @@ vector! {
     later(a, b) = _mm512_castsi512_ps(_mm512_max_epi32(_mm512_castps_si512(a), _mm512_castps_si512(b)));
     earlier(a, b) = _mm512_castsi512_ps(_mm512_min_epi32(_mm512_castps_si512(a), _mm512_castps_si512(b)));
     not_after(a, b) = _mm512_cmple_epi32_mask(_mm512_castps_si512(a), _mm512_castps_si512(b));
-    where_else(a, mask, b) = _mm512_mask_blend_ps(mask, b, a);
+    select(a, mask, b) = _mm512_mask_blend_ps(mask, b, a);
     and(a, b) = a & b;
     or(a, b) = a | b;
     not(a) = !a;
@@ -217,7 +217,7 @@ vector! {
     later(a, b) = _mm256_max_pd(a, b);
     earlier(a, b) = _mm256_min_pd(a, b);
     not_after(a, b) = _mm256_cmp_pd_mask::<_CMP_LE_OQ>(a, b);
-    where_else(a, mask, b) = _mm256_mask_blend_pd(mask, b, a);
+    select(a, mask, b) = _mm256_mask_blend_pd(mask, b, a);
     and(a, b) = a & b;
     or(a, b) = a | b;
     not(a) = !a;
@@ -245,7 +245,7 @@ vector! {
     later(a, b) = _mm512_max_pd(a, b);
     earlier(a, b) = _mm512_min_pd(a, b);
     not_after(a, b) = _mm512_cmp_pd_mask::<_CMP_LE_OQ>(a, b);
-    where_else(a, mask, b) = _mm512_mask_blend_pd(mask, b, a);
+    select(a, mask, b) = _mm512_mask_blend_pd(mask, b, a);
     and(a, b) = a & b;
     or(a, b) = a | b;
     not(a) = !a;

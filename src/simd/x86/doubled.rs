@@ -43,7 +43,7 @@ vector! {
     later(a, b) = _mm512_max_ps(a, b);
     earlier(a, b) = _mm512_min_ps(a, b);
     not_after(a, b) = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b);
-    where_else(a, mask, b) = _mm512_mask_blend_ps(mask, b, a);
+    select(a, mask, b) = _mm512_mask_blend_ps(mask, b, a);
     and(a, b) = a & b;
     or(a, b) = a | b;
     not(a) = !a;

@@ -35,7 +35,7 @@ vector! {
     later(a, b) = _mm_max_ps(a, b);
     earlier(a, b) = _mm_min_ps(a, b);
     not_after(a, b) = _mm_cmple_ps(a, b);
-    where_else(a, mask, b) = _mm_or_ps(_mm_and_ps(mask, a), _mm_andnot_ps(mask, b));
+    select(a, mask, b) = _mm_or_ps(_mm_and_ps(mask, a), _mm_andnot_ps(mask, b));
     and(a, b) = _mm_and_ps(a, b);
     or(a, b) = _mm_or_ps(a, b);
     not(a) = _mm_xor_ps(a, _mm_castsi128_ps(_mm_set1_epi32(-1)));
@@ -75,7 +75,7 @@ vector! {
     later(a, b) = _mm_max_pd(a, b);
     earlier(a, b) = _mm_min_pd(a, b);
     not_after(a, b) = _mm_cmple_pd(a, b);
-    where_else(a, mask, b) = _mm_or_pd(_mm_and_pd(mask, a), _mm_andnot_pd(mask, b));
+    select(a, mask, b) = _mm_or_pd(_mm_and_pd(mask, a), _mm_andnot_pd(mask, b));
     and(a, b) = _mm_and_pd(a, b);
     or(a, b) = _mm_or_pd(a, b);
     not(a) = _mm_xor_pd(a, _mm_castsi128_pd(_mm_set1_epi32(-1)));

@@ -1,0 +1,227 @@
+//! Counting references into bins, and the cheapest plane between two bins.
+
+use super::Split;
+use super::bin_grid::Grid;
+use super::proposal::{Proposal, Sides};
+use crate::builders::reference::{PrimRef, three};
+use crate::geometry::{Aabb, Axis, Scalar};
+use crate::simd::{Halves, Kernel, Lanes, prefetch_ahead};
+use crate::simd::{Isa, KernelLanes};
+
+/// The search for the cheapest plane between `N` bins on each axis, of which `count` are in use.
+#[derive(Clone, Copy)]
+pub(super) struct Bins<'r, S, const N: usize> {
+    pub references: &'r [PrimRef<S>],
+    /// What the bins divide.
+    pub span: &'r Aabb<S>,
+    pub count: usize,
+    /// As for [`Aabb::scaled_half_area`].
+    pub area_scale: S,
+}
+
+/// A plane, and the sum of the sides' areas times their counts.
+pub(super) struct Plane<S> {
+    pub weighted_area: S,
+    pub proposal: Proposal<S>,
+    /// The area that the sides have in common.
+    pub overlap: S,
+}
+
+/// Rows of bins are computed with in parts of so many lanes.
+const LANES: usize = 8;
+
+/// Boxes and numbers of references, by axis and bin. A box is one vector, its minimum negated: so one maximum joins two.
+struct Filled<S: Scalar, I: Isa, const N: usize> {
+    boxes: [[S::Times8<I>; N]; 3],
+    counts: [[i32; N]; 3],
+}
+
+impl<S: Scalar, const N: usize> Kernel for Bins<'_, S, N> {
+    /// More bins are rarely asked for.
+    const IS_WIDE: bool = N <= 16;
+    const USES_AVX512: bool = false;
+    /// None if all centroids are in one bin.
+    type Output = Option<Plane<S>>;
+
+    #[inline(always)]
+    fn run<I: Isa>(self, isa: I) -> Option<Plane<S>> {
+        const { assert!(N.is_multiple_of(LANES)) }
+        let scale = self.span.per_unit(self.count);
+        let filled = self.fill(isa, scale);
+        let costs = [self.costs(isa, &filled, 0), self.costs(isa, &filled, 1), self.costs(isa, &filled, 2)];
+        let (axis, bin, weighted_area) = least(isa, &costs)?;
+        let (origin, scale, first) = (self.span.min[axis], scale[axis], S::from_count(bin as i32));
+        let [left, right] = filled.sides(isa, axis, bin);
+        let overlap = to_box(isa, left.min(right)).scaled_half_area(self.area_scale);
+        let (axis, boxes) = (Axis::ALL[axis], [to_box(isa, left), to_box(isa, right)]);
+        let split = Split::Plane { axis, position: origin + first / scale };
+        let sides = Some(Sides { axis, origin, scale, bin: first, boxes });
+        Some(Plane { weighted_area, proposal: Proposal { split, sides }, overlap })
+    }
+}
+
+impl<S: Scalar, const N: usize> Bins<'_, S, N> {
+    #[inline(always)]
+    fn fill<I: Isa>(&self, isa: I, scale: [S; 3]) -> Filled<S, I, N> {
+        let grid = Grid::new(isa, self.span.min, scale, self.count);
+        let mut filled = Filled::empty(isa);
+        // More bins would take more of the stack than a worker may have.
+        if N > 16 || self.references.len() < 8 * N {
+            for reference in self.references {
+                filled.count(isa, &grid, reference);
+            }
+            return filled;
+        }
+        // The next reference's bin is often the last one's, which is still on its way to memory: two of each, in turns,
+        // save a twentieth of the build.
+        let mut others = Filled::<S, I, N>::empty(isa);
+        let (pairs, rest) = self.references.as_chunks::<2>();
+        for [first, second] in pairs {
+            // Two lie in a line.
+            prefetch_ahead(first);
+            filled.count(isa, &grid, first);
+            others.count(isa, &grid, second);
+        }
+        for reference in rest {
+            filled.count(isa, &grid, reference);
+        }
+        for axis in 0..3 {
+            for bin in 0..N {
+                filled.add(axis, bin, others.boxes[axis][bin], others.counts[axis][bin]);
+            }
+        }
+        filled
+    }
+
+    /// For each bin, the cost of a plane before it; NaN where a side is empty.
+    #[inline(always)]
+    fn costs<I: Isa>(&self, isa: I, filled: &Filled<S, I, N>, axis: usize) -> [S; N] {
+        let (boxes, counts) = (&filled.boxes[axis], &filled.counts[axis]);
+        let nothing = (S::Times8::splat(isa, S::NEG_INFINITY), 0);
+        let mut sides = [Side::<S, N>::EMPTY, Side::EMPTY];
+        let (mut aabb, mut count) = nothing;
+        for bin in 1..N {
+            (aabb, count) = (aabb.max(boxes[bin - 1]), count + counts[bin - 1]);
+            sides[0].put(bin, aabb, count);
+        }
+        (aabb, count) = nothing;
+        for bin in (1..N).rev() {
+            (aabb, count) = (aabb.max(boxes[bin]), count + counts[bin]);
+            sides[1].put(bin, aabb, count);
+        }
+        let scale = S::Times8::splat(isa, self.area_scale);
+        let mut costs = [S::ZERO; N];
+        for first in (0..N).step_by(LANES) {
+            let cost = sides[0].costs(isa, first, scale) + sides[1].costs(isa, first, scale);
+            cost.store(&mut costs[first..]);
+        }
+        // There is no plane before the first bin.
+        costs[0] = S::INFINITY;
+        costs
+    }
+}
+
+impl<S: Scalar, I: Isa, const N: usize> Filled<S, I, N> {
+    #[inline(always)]
+    fn empty(isa: I) -> Self {
+        Self { boxes: [[S::Times8::splat(isa, S::NEG_INFINITY); N]; 3], counts: [[0; N]; 3] }
+    }
+
+    /// The boxes before a bin, and those from it on.
+    #[inline(always)]
+    fn sides(&self, isa: I, axis: usize, border: usize) -> [S::Times8<I>; 2] {
+        let nothing = S::Times8::splat(isa, S::NEG_INFINITY);
+        let (mut left, mut right) = (nothing, nothing);
+        for bin in 0..N {
+            let side = if bin < border { &mut left } else { &mut right };
+            *side = side.max(self.boxes[axis][bin]);
+        }
+        [left, right]
+    }
+
+    #[inline(always)]
+    fn add(&mut self, axis: usize, bin: usize, aabb: S::Times8<I>, count: i32) {
+        self.counts[axis][bin] += count;
+        let joined = &mut self.boxes[axis][bin];
+        *joined = joined.max(aabb);
+    }
+
+    #[inline(always)]
+    fn count(&mut self, isa: I, grid: &Grid<S, I>, reference: &PrimRef<S>) {
+        let [min, max] = reference.corners::<I>(isa);
+        let aabb = S::Times8::of_halves([S::Times4::splat(isa, S::ZERO) - min, max]);
+        let [x, y, z] = grid.cells(min, max);
+        self.add(0, x as usize % N, aabb, 1);
+        self.add(1, y as usize % N, aabb, 1);
+        self.add(2, z as usize % N, aabb, 1);
+    }
+}
+
+/// A box whose minimum is negated.
+#[inline(always)]
+fn to_box<S: Scalar, I: Isa>(isa: I, aabb: S::Times8<I>) -> Aabb<S> {
+    let [negated_min, max] = aabb.to_halves();
+    Aabb { min: three(S::Times4::splat(isa, S::ZERO) - negated_min), max: three(max) }
+}
+
+/// All on one side of each plane: the box's extents and the number of references.
+struct Side<S, const N: usize> {
+    extents: [[S; N]; 3],
+    counts: [S; N],
+}
+
+impl<S: Scalar, const N: usize> Side<S, N> {
+    const EMPTY: Self = Self { extents: [[S::ZERO; N]; 3], counts: [S::ZERO; N] };
+
+    #[inline(always)]
+    fn put<I: Isa>(&mut self, bin: usize, aabb: S::Times8<I>, count: i32) {
+        let [negated_min, max] = aabb.to_halves();
+        let [x, y, z] = three(max + negated_min);
+        self.extents[0][bin] = x;
+        self.extents[1][bin] = y;
+        self.extents[2][bin] = z;
+        self.counts[bin] = S::from_count(count);
+    }
+
+    /// Of eight bins. Of nothing at all it is NaN, infinity times zero.
+    #[inline(always)]
+    fn costs<I: Isa>(&self, isa: I, first: usize, scale: S::Times8<I>) -> S::Times8<I> {
+        let [x, y, z] = &self.extents;
+        let x = eight(isa, x, first) * scale;
+        let y = eight(isa, y, first) * scale;
+        let z = eight(isa, z, first) * scale;
+        (x * y + y * z + z * x) * eight(isa, &self.counts, first)
+    }
+}
+
+/// A part of a row.
+#[inline(always)]
+fn eight<S: Scalar, I: Isa, const N: usize>(isa: I, row: &[S; N], first: usize) -> S::Times8<I> {
+    S::Times8::from_slice(isa, &row[first..first + LANES])
+}
+
+/// Where the least number is, the first of equals, and the number; none if there is none.
+#[inline(always)]
+fn least<S: Scalar, I: Isa, const N: usize>(isa: I, costs: &[[S; N]; 3]) -> Option<(usize, usize, S)> {
+    let mut smallest = S::Times8::splat(isa, S::INFINITY);
+    for row in costs {
+        for first in (0..N).step_by(LANES) {
+            smallest = eight(isa, row, first).min(smallest);
+        }
+    }
+    let smallest =
+        (0..LANES).fold(S::INFINITY, |least, lane| crate::geometry::min(smallest.lane(lane), least));
+    // No cost is NaN here: the minimum has left those out.
+    if smallest == S::INFINITY {
+        return None;
+    }
+    for (axis, row) in costs.iter().enumerate() {
+        for first in (0..N).step_by(LANES) {
+            let is_least = S::Times8::<I>::bits(eight(isa, row, first).le(S::Times8::splat(isa, smallest)));
+            if is_least != 0 {
+                return Some((axis, first + is_least.trailing_zeros() as usize, smallest));
+            }
+        }
+    }
+    None
+}

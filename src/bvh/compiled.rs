@@ -1,0 +1,36 @@
+//! What is compiled in this crate, for `f32` and for `f64`: see `builders::compiled`.
+
+use super::error::BuildError;
+use super::job::{Job, LayOut};
+use super::workspace::Workspace;
+use crate::geometry::Scalar;
+use alloc::vec::Vec;
+
+/// Builds of a scalar.
+pub trait CompiledBuild: Sized {
+    /// Builds a tree and has it laid out; the indices of skipped primitives.
+    fn build(
+        job: &Job<'_, Self>,
+        workspace: &mut Workspace<Self>,
+        lay_out: LayOut<'_, Self>,
+    ) -> Result<Vec<u32>, BuildError>
+    where
+        Self: Scalar;
+}
+
+macro_rules! compiled_here {
+    ($($scalar:ty)*) => {$(
+        impl CompiledBuild for $scalar {
+            #[inline(never)]
+            fn build(
+                job: &Job<'_, Self>,
+                workspace: &mut Workspace<Self>,
+                lay_out: LayOut<'_, Self>,
+            ) -> Result<Vec<u32>, BuildError> {
+                job.run(workspace, lay_out)
+            }
+        }
+    )*};
+}
+
+compiled_here!(f32 f64);

@@ -1,0 +1,137 @@
+//! A build without its types: what is done whatever the primitives, the heuristic and the layout
+//! are.
+
+use super::error::BuildError;
+use super::options::{Clock, OnInvalid, Options};
+use super::workspace::Workspace;
+use crate::builders::heuristic::Heuristic;
+use crate::builders::{BuildControl, PrimRef, Progress, ProgressCallback, Rules, build_tree};
+use crate::geometry::Scalar;
+use crate::layout::Buffers;
+use crate::parallel::{PART, Places, concat, in_pool};
+use crate::tree::MAX_DEPTH;
+use crate::tree::Tree;
+use alloc::vec::Vec;
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
+#[cfg(feature = "std")]
+use std::time::Instant;
+
+/// What the layout asks of the tree.
+pub struct Needs {
+    /// How many primitives a leaf tests at once.
+    pub block_size: usize,
+    /// Into how many leaves it divides a large one.
+    pub leaf_ranges: usize,
+    /// Bytes reserved for each primitive.
+    pub reserve: usize,
+}
+
+/// A build.
+pub struct Job<'j, S: Scalar> {
+    pub options: &'j Options,
+    pub clock: Clock,
+    pub heuristic: &'j dyn Heuristic<S>,
+    pub needs: Needs,
+    /// How many primitives there are.
+    pub count: usize,
+    /// Makes references to primitives from one on, as many as there are places; tells whether all
+    /// are valid.
+    pub refer: &'j Refer<'j, S>,
+}
+
+/// What is done with a tree once it is built. False if it is too large for that.
+pub type LayOut<'l, S> = &'l mut (dyn FnMut(&mut Tree<S>, &mut Buffers) -> bool + Send);
+
+/// See [`Job::refer`].
+pub type Refer<'j, S> = dyn Fn(usize, &mut Places<'_, PrimRef<S>>) -> bool + Sync + 'j;
+
+impl<S: Scalar> Job<'_, S> {
+    /// Builds the tree and has it laid out, on the threads asked for; the indices of skipped
+    /// primitives.
+    pub fn run(&self, workspace: &mut Workspace<S>, lay_out: LayOut<'_, S>) -> Result<Vec<u32>, BuildError> {
+        let mut done = Ok(Vec::new());
+        in_pool(self.options.threads, self.count, &mut || done = self.steps(workspace, lay_out))
+            .map_err(BuildError::ThreadPool)?;
+        done
+    }
+
+    fn steps(&self, workspace: &mut Workspace<S>, lay_out: LayOut<'_, S>) -> Result<Vec<u32>, BuildError> {
+        self.make_room(workspace);
+        let skipped = self.refer(&mut workspace.build.references)?;
+        let Self { options, heuristic, needs, .. } = self;
+        let rules = Rules {
+            heuristic: *heuristic,
+            max_leaf_size: options.max_leaf_size.unwrap_or(needs.block_size.max(4)),
+            max_leaf_ranges: if options.max_leaf_size.is_none() { needs.leaf_ranges } else { 1 },
+            block_size: needs.block_size,
+            max_depth: MAX_DEPTH,
+        };
+        let pace = |progress| self.pace(progress);
+        let progress = Progress::new(&pace);
+        let mut tree = build_tree(&mut workspace.build, &rules, &progress).ok_or(BuildError::Stopped)?;
+        workspace.hand_over();
+        let optimise = options.optimise.or_else(|| heuristic.optimise());
+        if let Some(optimise) = optimise.filter(|optimise| optimise.rounds > 0) {
+            optimise.run(&mut tree, workspace.layout.words(), &|| progress.poll() == BuildControl::Steady);
+        }
+        if progress.poll() == BuildControl::Stop {
+            return Err(BuildError::Stopped);
+        }
+        let is_laid_out = lay_out(&mut tree, &mut workspace.layout);
+        workspace.build.reclaim(tree);
+        if is_laid_out { Ok(skipped) } else { Err(BuildError::TooLarge) }
+    }
+
+    /// For references, what the heuristic wants beside them, and what is made of them.
+    fn make_room(&self, workspace: &mut Workspace<S>) {
+        let (count, size) = (self.count, size_of::<PrimRef<S>>());
+        let beside = if self.heuristic.cluster_size() > 1 {
+            // Two lists of keys.
+            count.saturating_mul(2 * size_of::<u64>())
+        } else {
+            // A heuristic that asks for very much gets it when it splits.
+            size.saturating_mul(self.heuristic.extra_references(count)).min(size.saturating_mul(count))
+        };
+        // Where addresses are short, memory for later may be more than there is.
+        let later = if size_of::<usize>() >= 8 { self.needs.reserve } else { 0 };
+        workspace.make_room(size.saturating_mul(count).saturating_add(beside), later.saturating_mul(count));
+    }
+
+    /// Makes references to the valid primitives; the indices of the others.
+    fn refer(&self, references: &mut Vec<PrimRef<S>>) -> Result<Vec<u32>, BuildError> {
+        let is_flawed = AtomicBool::new(false);
+        let firsts = (0..self.count).step_by(PART);
+        let lens: Vec<_> = firsts.map(|first| PART.min(self.count - first)).collect();
+        *references = concat(core::mem::take(references), &lens, &|part, places| {
+            if !(self.refer)(part * PART, places) {
+                is_flawed.store(true, Relaxed);
+            }
+        });
+        let mut skipped = Vec::new();
+        if is_flawed.into_inner() {
+            let flaws =
+                references.iter().filter_map(|reference| Some((reference.index, reference.invalid_box()?)));
+            match self.options.on_invalid {
+                OnInvalid::Skip => skipped = flaws.map(|(index, _)| index).collect(),
+                OnInvalid::Reject => {
+                    if let Some((index, flaw)) = flaws.min_by_key(|&(index, _)| index) {
+                        return Err(BuildError::InvalidPrimitive { index: index as usize, flaw });
+                    }
+                }
+            }
+            references.retain(|reference| reference.invalid_box().is_none());
+        }
+        Ok(skipped)
+    }
+
+    /// What the watcher says, and the clock.
+    fn pace(&self, progress: f64) -> BuildControl {
+        let watcher = self.options.watcher.as_ref();
+        let pace = watcher.map_or(BuildControl::Steady, |ProgressCallback(watcher)| watcher(progress));
+        #[cfg(feature = "std")]
+        if self.clock.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+            return pace.max(BuildControl::Hurry);
+        }
+        pace
+    }
+}

@@ -1,0 +1,36 @@
+//! What is compiled in this crate, for `f32` and for `f64`: see `builders::compiled`.
+
+use super::{Buffers, Collapsed, Contents, Shape, WIDTH, collapse};
+use crate::geometry::Scalar;
+use crate::tree::Tree;
+
+/// Layouts of a scalar.
+pub trait CompiledLayout: Sized {
+    /// The wide tree of nodes of [`WIDTH`].
+    fn collapse(
+        tree: &Tree<Self>,
+        contents: &dyn Contents<Self>,
+        shape: &Shape<Self>,
+        buffers: &mut Buffers,
+    ) -> Option<Collapsed>
+    where
+        Self: Scalar;
+}
+
+macro_rules! compiled_here {
+    ($($scalar:ty)*) => {$(
+        impl CompiledLayout for $scalar {
+            #[inline(never)]
+            fn collapse(
+                tree: &Tree<Self>,
+                contents: &dyn Contents<Self>,
+                shape: &Shape<Self>,
+                buffers: &mut Buffers,
+            ) -> Option<Collapsed> {
+                collapse::<Self, WIDTH>(tree, contents, shape, buffers)
+            }
+        }
+    )*};
+}
+
+compiled_here!(f32 f64);
