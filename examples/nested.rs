@@ -1,10 +1,10 @@
-//! A hierarchy as a primitive: many copies of one mesh, each a place.
+//! A hierarchy as a primitive: many copies of one mesh, each in another place.
 
 use bvhkit::{Aabb, Bvh, Intersect, OneByOne, Primitive, Ray, Triangle};
 use std::f32::consts::{PI, TAU};
 use std::time::Instant;
 
-/// A hierarchy, moved.
+/// A copy of a hierarchy, moved to a place.
 struct Copy<'a> {
     mesh: &'a Bvh<Triangle>,
     place: [f32; 3],
@@ -19,9 +19,9 @@ impl Primitive for Copy<'_> {
 }
 
 impl Intersect for Copy<'_> {
-    type Payload = usize; // which of the mesh's triangles
+    type Payload = usize; // index of the mesh's triangle
     type Leaf = OneByOne;
-    /// The ray ends at the closest hit so far, by which the mesh's own query prunes.
+    /// Asks the mesh, whose query prunes by the ray's end: the closest hit so far.
     fn intersect(&self, ray: &Ray) -> Option<(f32, usize)> {
         let ([ox, oy, oz], [x, y, z]) = (ray.origin, self.place);
         let hit = self.mesh.closest_hit(&Ray { origin: [ox - x, oy - y, oz - z], ..*ray })?;
@@ -45,7 +45,7 @@ fn main() -> Result<(), bvhkit::BuildError> {
         let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
         [Triangle::new(a, b, c), Triangle::new(a, c, d)]
     }))?;
-    // They overlap: each ray meets the boxes of many.
+    // The copies overlap, so each ray meets the boxes of many.
     let copies = Bvh::build((0..500).map(|i| Copy { mesh: &mesh, place: point(100_000 + i) }))?;
     let rays: Vec<Ray> = (0..20_000)
         .map(|i| {

@@ -1,4 +1,6 @@
-//! A split heuristic of one's own: one method. `cargo run --release --example own_heuristic`
+//! A user's own split heuristic, which is one method.
+//!
+//! `cargo run --release --example own_heuristic`
 
 use bvhkit::heuristic::{BuildNode, Heuristic, Median, Split};
 use bvhkit::{Bvh, Ray, Sphere};
@@ -18,7 +20,7 @@ impl Heuristic<f32> for Mean {
 }
 
 fn main() -> Result<(), bvhkit::BuildError> {
-    // Spheres along a line, sparser and sparser.
+    // Spheres along a line, with growing gaps.
     let spheres: Vec<Sphere> = (0..1000).map(|i| Sphere::new([(i * i) as f32, 0.0, 0.0], 9.0)).collect();
     let mean = Bvh::builder().heuristic(Mean).build(&spheres)?;
     let median = Bvh::builder().heuristic(Median).build(&spheres)?;

@@ -1,4 +1,6 @@
-//! A primitive of one's own side by side in its leaves: a sieve tests eight discs at once, and those it lets through are asked.
+//! A user's own primitive in packed leaves.
+//!
+//! A sieve tests eight discs at once; then `intersect` tests the discs that the sieve lets through.
 
 use bvhkit::{Aabb, Bvh, Intersect, Lanes, Operands, Primitive, Ray, Sieve, Sieved};
 
@@ -31,7 +33,7 @@ impl Intersect for Disc {
 
 impl Sieve<f32> for DiscSieve {
     const OPERANDS: usize = 4;
-    /// What `intersect` computes, operation by operation, so that no hit is left out.
+    /// Repeats `intersect` operation by operation, so that no hit is left out.
     fn candidates<L: Lanes<f32>>(discs: &Operands<'_, f32, L>, ray: &Ray) -> L::Mask {
         let ([ox, oy, oz], [dx, dy, dz]) =
             (ray.origin.map(|x| discs.splat(x)), ray.direction.map(|x| discs.splat(x)));

@@ -1,4 +1,6 @@
-//! A primitive of one's own: a box, a ray test. `cargo run --release --example own_primitive`
+//! A user's own primitive, which is a box and a ray test.
+//!
+//! `cargo run --release --example own_primitive`
 
 use bvhkit::{Aabb, Bvh, Intersect, OneByOne, Primitive, Ray, reference};
 
@@ -18,7 +20,7 @@ impl Primitive for Disc {
 
 impl Intersect for Disc {
     type Payload = f32; // the distance from the center
-    type Leaf = OneByOne; // how discs lie in a leaf
+    type Leaf = OneByOne; // how leaves store discs
     fn intersect(&self, ray: &Ray) -> Option<(f32, f32)> {
         let t = (self.center[1] - ray.origin[1]) / ray.direction[1];
         let [x, _, z] = ray.at(t);

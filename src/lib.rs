@@ -1,5 +1,7 @@
-//! Bounding volume hierarchies over any primitive, with the split heuristic of your choice, and
-//! answers that equal the naive loop's bit for bit.
+//! Bounding volume hierarchies for ray tracing, over any primitive.
+//!
+//! The split heuristic is your choice. The answers equal those of the naive loop over
+//! all primitives, bit for bit.
 //!
 //! ```
 //! use bvhkit::{Bvh, Ray, Triangle};
@@ -18,51 +20,55 @@
 //! # Ok::<(), bvhkit::BuildError>(())
 //! ```
 //!
-//! # The way through
+//! # Overview
 //!
 //! ```text
-//! primitives -> boxes -> driver, asking a heuristic -> tree -> reinsertion -> layout -> queries -> hits
+//! primitives -> boxes -> driver + heuristic -> tree -> reinsertion -> layout -> queries -> hits
 //! ```
 //!
-//! - What a tree can hold: [`Primitive`], one method; to be hit by rays, [`Intersect`], one more.
-//!   Built in: [`Triangle`], [`TriangleMesh`], [`Sphere`], [`Aabb`].
-//! - How exactly a triangle is tested, by type: [`Watertight`], what [`Triangle`] is by itself, [`Fast`]
-//!   or [`Precise`]; `docs/accuracy.md` has the errors and the price of each.
-//! - How it is built: [`Bvh::build`] for the good default, [`Bvh::builder`] for a [`Quality`], one
-//!   of the [`heuristic`]s or your own, how much to [`Optimise`], the leaf size, threads, a time budget, and what to do
-//!   with invalid primitives. In memory that earlier ones left: [`Workspace`].
-//! - How it lies in memory, by type: [`WideTree`] for speed, what [`Bvh`] has by itself, [`CompactTree`] for few bytes, or the
-//!   binary [`Tree`]; and
-//!   what it is computed with, [`InstructionSet`], the best that the processor has unless told.
-//! - What it answers: [`Bvh::closest_hit`], [`Bvh::any_hit`], [`Bvh::hits`], each with
-//!   [`Counters`] on request; [`Bvh::closest_hits`] and [`Bvh::any_hits`] for many rays.
-//! - What to test it, or your own, against: [`reference`](mod@reference); with the feature `exact`,
-//!   the answer of exact arithmetic too.
-//! - What it looks like: [`Bvh::report`], [`Bvh::check`]; how good it is: [`Bvh::epo`], and, by your own rays,
-//!   [`Bvh::closest_hit_steps`].
+//! - Primitives: a tree needs one method, [`Primitive`]. Rays need one more, [`Intersect`]. Built
+//!   in: [`Triangle`], [`TriangleMesh`], [`Sphere`], [`Aabb`].
+//! - Tests of a triangle, by type: [`Watertight`], the mode of a plain [`Triangle`], [`Fast`], or
+//!   [`Precise`]. `docs/accuracy.md` has the errors and the price of each.
+//! - Building: [`Bvh::build`] has good defaults. [`Bvh::builder`] sets a [`Quality`], one of the
+//!   [`heuristic`]s or your own, the amount of reinsertion ([`Optimise`]), the leaf size,
+//!   threads, a time budget, and the treatment of invalid primitives. A [`Workspace`] reuses the
+//!   memory of earlier builds.
+//! - Layouts, by type: [`WideTree`], the default of [`Bvh`], for speed; [`CompactTree`] for few
+//!   bytes; or the binary [`Tree`]. Queries use the best [`InstructionSet`] that the processor has,
+//!   unless another one is set.
+//! - Queries: [`Bvh::closest_hit`], [`Bvh::any_hit`], [`Bvh::hits`], each with [`Counters`] on
+//!   request; [`Bvh::closest_hits`] and [`Bvh::any_hits`] for many rays.
+//! - Tests of this crate's hierarchies, or of your own: [`reference`](mod@reference) has the naive
+//!   answers; with the feature `exact`, it has the answers of exact arithmetic too.
+//! - Inspection: [`Bvh::report`] and [`Bvh::check`]. Quality: [`Bvh::epo`], and
+//!   [`Bvh::closest_hit_steps`] with your own rays.
 //!
-//! # What is promised
+//! # Promises
 //!
-//! - **The naive answer.** The hit is that of the loop over all primitives with the same primitive
-//!   test: same t bits, same index, the lowest index where several have the same t. It does not
-//!   depend on heuristic, leaf size, layout, instruction set or number of threads. How: [`Intersect::intersect`].
-//! - **No leaks.** A ray from inside a closed mesh, by more than rounding, hits it, at edges and corners too,
-//!   unless its triangles are [`Fast`]: see [`Watertight`].
-//! - **No panics on data.** NaN, infinities, empty input, degenerate primitives, absurd options: each
-//!   has a documented answer or a typed error, [`BuildError`]. (Your own trait implementations may
-//!   panic, of course.)
-//! - **Bounded depth.** No leaf is deeper than [`MAX_DEPTH`], whatever heuristic and data; closest
-//!   and any hit need no memory but a fixed stack, builds do not recurse.
-//! - **Any math library.** Points go in as anything that converts to `[f32; 3]` or `[f64; 3]`, and
-//!   come out as arrays.
+//! - **The naive answer.** A query returns the hit of the loop over all primitives with the
+//!   same primitive test: the same bits of t and the same index, the lowest index where
+//!   several primitives have the same t. The answer does not depend on the heuristic, the leaf
+//!   size, the layout, the instruction set or the number of threads. [`Intersect::intersect`]
+//!   has the rule behind this.
+//! - **No leaks.** A ray from inside a closed mesh, by more than rounding, hits the mesh, at edges
+//!   and corners too, unless its triangles are [`Fast`]: see [`Watertight`].
+//! - **No panics on data.** NaN, infinities, empty input, degenerate primitives and absurd options
+//!   each have a documented answer or a typed error, [`BuildError`]. Your own trait
+//!   implementations may panic.
+//! - **Bounded depth.** No leaf is deeper than [`MAX_DEPTH`], whatever the heuristic and the data.
+//!   Closest and any hits use a fixed stack and no other memory. Builds do not recurse.
+//! - **Any math library.** Points go in as any type that converts to `[f32; 3]` or
+//!   `[f64; 3]`, and come out as arrays.
 //!
 //! # Features
 //!
-//! - `rayon` (default): parallel builds; the tree is the same with and without.
-//! - `std` (default): the standard library's square root, its clock, the processor's features. Without it the crate is `no_std` + alloc.
-//! - `libm`: libm's square root, needed without `std`.
-//! - `exact`: the exact oracle, `reference::exact`.
-//! - `portable`: [`InstructionSet::Portable`] also where the target has vectors, for tests.
+//! - `rayon` (default): parallel builds. The tree is the same without it.
+//! - `std` (default): the square root and the clock of the standard library, and detection of the
+//!   processor's instruction sets. Without `std`, the crate is `no_std` + alloc.
+//! - `libm`: the square root of libm, required without `std`.
+//! - `exact`: the oracle in exact arithmetic, `reference::exact`.
+//! - `portable`: [`InstructionSet::Portable`] also on targets with vectors, for tests.
 #![no_std]
 #![deny(missing_docs)]
 
@@ -85,22 +91,22 @@ mod simd;
 mod traverse;
 mod tree;
 
-/// The examples of the README are tests.
+/// Runs the examples of the README as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// The examples of the page on accuracy are tests.
+/// Runs the examples of the page on accuracy as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/accuracy.md")]
 struct AccuracyPage;
 
-/// The examples of the page on layouts are tests.
+/// Runs the examples of the page on layouts as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/layouts.md")]
 struct LayoutsPage;
 
-/// The examples of the page on building are tests.
+/// Runs the examples of the page on building as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/building.md")]
 struct BuildingPage;

@@ -1,21 +1,28 @@
-//! Memory that serves one thing after another.
+//! Memory that serves one purpose after another.
 //!
-//! What is new to a process costs more than what is written to it: systems hand it out page by page, as it is touched, and on a
-//! virtual machine a page took a microsecond or two. So a build touches little of it: references to primitives, keys
-//! behind them, then what optimisation knows of the tree that was made of them, then what the collapse knows of it, and then nodes
-//! and leaves lie in the same memory. It touches a quarter to a third less so (sponza: `Quality::Fast` 5,700 pages instead of
-//! 8,400, `Balanced` 6,900 instead of 10,100; before what optimisation and collapse know was there too).
+//! Memory that is new to a process costs more than writing to it: systems hand it out page by page,
+//! as it is touched. So a build touches little of it. The same memory holds, one after another:
+//!
+//! - references to primitives, and keys behind them;
+//! - the data of the optimisation about the tree that was made of the references;
+//! - the data of the collapse about that tree;
+//! - nodes and leaves.
+//!
+//! So a build touches a quarter to a third fewer pages (measured:
+//! docs/decisions.md, 34).
 
 use crate::parallel::filled;
 use alloc::vec::Vec;
 use core::mem::{ManuallyDrop, MaybeUninit, take};
 
-/// What memory consists of in which anything may lie.
+/// 16-byte unit of untyped buffers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]
 pub(crate) struct Word(pub [u64; 2]);
 
-/// The memory of a buffer as an empty one of other items; none if it is not a whole number of them.
+/// Returns the memory of a buffer as an empty buffer of other items.
+///
+/// Returns a buffer without memory if the bytes are not a whole number of such items.
 pub(crate) fn recast<T: Copy, U: Copy>(buffer: Vec<T>) -> Vec<U> {
     const { assert!(align_of::<T>() == align_of::<U>() && size_of::<U>() > 0) }
     let bytes = buffer.capacity() * size_of::<T>();
@@ -23,20 +30,24 @@ pub(crate) fn recast<T: Copy, U: Copy>(buffer: Vec<T>) -> Vec<U> {
         return Vec::new();
     }
     let mut buffer = ManuallyDrop::new(buffer);
-    // SAFETY: the vector's memory, which it does not free any more: of as many bytes, with the same alignment, as asked above. No
-    // item of it is taken to be initialised, and those that were need not be dropped.
+    // SAFETY: the memory is that of the vector, which does not free it any more (`ManuallyDrop`).
+    // It has the same alignment, and a whole number of items, as checked above. The length is 0, so
+    // no item is taken to be initialised. Items of `T` are `Copy`, and need not be dropped.
     unsafe { Vec::from_raw_parts(buffer.as_mut_ptr().cast(), 0, bytes / size_of::<U>()) }
 }
 
-/// The items, and behind them in the same memory so many zeros for each: in memory that has no room for them, they move.
+/// Returns the items, and `each` zeros per item behind them in the same memory.
+///
+/// If the memory has no room for the zeros, the items move.
 pub(crate) fn with_numbers<T: Copy>(items: &mut Vec<T>, each: usize) -> (&mut [T], &mut [u64]) {
     const { assert!(align_of::<T>() >= align_of::<u64>()) }
     let count = items.len();
     let numbers = count.checked_mul(each).expect("as many as there is memory for");
     items.reserve_exact(bytes::<u64>(numbers).div_ceil(size_of::<T>()));
     let items = items.as_mut_ptr();
-    // SAFETY: `count` items that are initialised, and behind them memory of the same vector for as many numbers, at an address
-    // that is good for them, as asked above. They do not overlap, and the vector is borrowed for both.
+    // SAFETY: the vector has `count` initialised items. Behind them, it has memory for `numbers`
+    // numbers, reserved above. The address is aligned for numbers: `T` is aligned at least like
+    // `u64`, as asserted above. The two slices do not overlap, and the vector is borrowed for both.
     let (items, behind) = unsafe {
         let behind = items.add(count).cast::<MaybeUninit<u64>>();
         (core::slice::from_raw_parts_mut(items, count), core::slice::from_raw_parts_mut(behind, numbers))
@@ -44,10 +55,12 @@ pub(crate) fn with_numbers<T: Copy>(items: &mut Vec<T>, each: usize) -> (&mut [T
     (items, filled(behind, 0))
 }
 
-/// A value so many times, in memory in which nothing lies; it is another one if it has no room for them.
+/// Returns `len` copies of a value, in the memory of words that are not in use.
+///
+/// If the memory has no room for them, other memory replaces it.
 pub(crate) fn lent<T: Copy + Send + Sync>(words: &mut Vec<Word>, len: usize, value: T) -> &mut [T] {
     const { assert!(align_of::<T>() <= align_of::<Word>()) }
-    // A whole number of references, whatever their scalars.
+    // A whole number of references, whatever their scalar.
     let needed = bytes::<T>(len).div_ceil(size_of::<Word>()).next_multiple_of(4);
     if words.capacity() < needed {
         drop(take(words));
@@ -55,19 +68,22 @@ pub(crate) fn lent<T: Copy + Send + Sync>(words: &mut Vec<Word>, len: usize, val
     }
     words.clear();
     let places = words.as_mut_ptr().cast::<MaybeUninit<T>>();
-    // SAFETY: memory of the vector for so many at an address that is good for them, as asked above. No word of it is in use, and the
-    // vector is borrowed.
+    // SAFETY: the vector has memory for `len` values, reserved above, at an address that is aligned
+    // for them, as asserted above. No word of it is in use, and the vector is borrowed.
     filled(unsafe { core::slice::from_raw_parts_mut(places, len) }, value)
 }
 
-/// How many so many take.
+/// Returns the byte size of `len` items of `T`.
 fn bytes<T>(len: usize) -> usize {
     len.checked_mul(size_of::<T>()).expect("as many as there is memory for")
 }
 
-/// An empty buffer for so many: the kept one, unless it is too small, or so large that what is made of it would take much more
-/// than it has to. In place of one that is too small, one that is larger by an eighth, for what goes on to grow: by a
-/// multiple of four, so that words remain a whole number of references.
+/// Returns an empty buffer with room for `len` items.
+///
+/// The kept buffer is returned if it is large enough, and not larger than twice the need: in a
+/// larger one, the result would take much more memory than it has to. A kept buffer that is too
+/// small is replaced by one that is an eighth larger than needed, since the need may go on to grow.
+/// The eighth is a multiple of four, so that words remain a whole number of references.
 pub(crate) fn fitting<T>(kept: &mut Vec<T>, len: usize) -> Vec<T> {
     kept.clear();
     match kept.capacity() {
@@ -121,7 +137,7 @@ mod tests {
         assert_eq!(lent(&mut Vec::new(), 0, 3u8), []);
     }
 
-    /// Behind items that have room for them, and behind some that have to move.
+    /// Covers items with room behind them, and items that have to move.
     #[test]
     fn numbers_lie_behind_items() {
         for room in [0, 2] {

@@ -1,8 +1,8 @@
-//! The one place that knows of threads. Results never depend on their number.
+//! The only module that knows of threads; results never depend on their number.
 //!
-//! Of rayon, `rayon-core` alone: to join, to scope and to start pools is all that is needed, and
-//! its threads are those that users of rayon have. The parallel iterators, which are compiled for
-//! each use, took 60 % of what a build was compiled to.
+//! It uses `rayon-core` alone: it needs no more than to join, to scope and to start pools, and its
+//! threads are those that users of `rayon` have. The parallel iterators of `rayon` are compiled for
+//! each use, and were 60 % of the compiled code of a build.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -11,12 +11,12 @@ use core::mem::{MaybeUninit, take};
 #[cfg(feature = "rayon")]
 use core::ops::Range;
 
-/// The thread pool that was asked for could not be started.
+/// The error of a thread pool that could not be started.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ThreadPoolError {
-    /// How many threads were asked for.
+    /// The number of threads asked for.
     pub threads: usize,
-    /// What the operating system said.
+    /// The reason that the operating system gave.
     pub reason: String,
 }
 
@@ -28,19 +28,22 @@ impl fmt::Display for ThreadPoolError {
 
 impl core::error::Error for ThreadPoolError {}
 
-/// Items in a part: for fewer no other thread is woken.
+/// The number of items in a part; fewer items wake no other thread.
 pub(crate) const PART: usize = 1 << 12;
 
-/// Whether another thread could help with so many parts, each of which takes a while. Else they are done on the spot: small
-/// builds never wake a thread, and a pool of one is not worth going to. To go there and back for every call took 1 to 4 ms of a
-/// build on a virtual machine (kitchen with `Quality::Fast` 5.3 ms instead of 4.1, dragon with `Balanced` 44.6 instead of 42.3).
+/// Returns whether another thread could help with so many parts.
+///
+/// Each part takes a while. Without help, the calling thread does the parts on the spot: small
+/// builds never wake a thread, and a pool of one thread is not entered. To enter it for every call
+/// took 1 to 4 ms of a build (measured: docs/decisions.md, 33).
 #[cfg(feature = "rayon")]
 fn has_help(parts: usize) -> bool {
     parts > 1 && rayon_core::current_num_threads() > 1
 }
 
-/// Calls `f` with each number below `parts`, once and in any order. Compiled once, whatever the
-/// parts are.
+/// Calls `f` with each number below `parts`, once and in any order.
+///
+/// It is compiled once, for parts of every kind.
 fn for_each(parts: usize, f: &(dyn Fn(usize) + Sync)) {
     #[cfg(feature = "rayon")]
     if has_help(parts) {
@@ -49,7 +52,7 @@ fn for_each(parts: usize, f: &(dyn Fn(usize) + Sync)) {
     (0..parts).for_each(f);
 }
 
-/// One half here, the other one too unless another thread takes it.
+/// Runs one half here, and the other half too unless another thread takes it.
 #[cfg(feature = "rayon")]
 fn halve(parts: Range<usize>, f: &(dyn Fn(usize) + Sync)) {
     if parts.len() < 2 {
@@ -59,21 +62,23 @@ fn halve(parts: Range<usize>, f: &(dyn Fn(usize) + Sync)) {
     rayon_core::join(|| halve(parts.start..middle, f), || halve(middle..parts.end, f));
 }
 
-/// Applies `f` to each item where it lies.
+/// Applies `f` to each item in place.
 pub(crate) fn each<T: Send>(items: &mut [T], f: impl Fn(&mut T) + Sync) {
-    /// Of items that one thread at a time takes.
+    /// The address of the first item; one thread at a time takes each item.
     struct First<T>(*mut T);
-    // SAFETY: what is shared are exclusive references to items that may be sent.
+    // SAFETY: each item is used by one thread, through an exclusive reference
+    // (below), and items may be sent.
     unsafe impl<T: Send> Sync for First<T> {}
     let first = First(items.as_mut_ptr());
     let first = &first;
     for_each(items.len(), &|item| {
-        // SAFETY: one of the items, which are borrowed for all of this; each number comes once.
+        // SAFETY: `item` is one of the items, which are borrowed for the whole call. `for_each`
+        // passes each number once, so no other reference to the item exists.
         f(unsafe { &mut *first.0.add(item) });
     });
 }
 
-/// What `f` makes of each item, in the items' order.
+/// Returns the result of `f` for each item, in the order of the items.
 pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync) -> Vec<R> {
     let mut slots = Vec::with_capacity(items.len());
     for item in items {
@@ -87,14 +92,14 @@ pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync) ->
     results
 }
 
-/// Memory of a list that is to be filled from the front.
+/// The memory of a list that is filled from the front.
 pub struct Places<'m, T> {
     places: &'m mut [MaybeUninit<T>],
     filled: usize,
 }
 
 impl<T: Copy> Places<'_, T> {
-    /// Fills the next places with items; those for which there is none are left out.
+    /// Fills the next places with items; items without a place are left out.
     #[inline(always)]
     pub fn extend(&mut self, items: impl Iterator<Item = T>) {
         let mut filled = self.filled;
@@ -106,10 +111,12 @@ impl<T: Copy> Places<'_, T> {
     }
 }
 
-/// Lists of these lengths one after another, in empty memory: `fill` fills each, by its number.
+/// Returns lists of these lengths, one after another, as one list.
+///
+/// `fill` fills each list, by its number. The list is in the given memory, which is cleared first.
 ///
 /// # Panics
-/// If a list has fewer items than it has places.
+/// If `fill` leaves a place of a list empty.
 pub(crate) fn concat<T: Copy + Send>(
     mut memory: Vec<T>,
     lens: &[usize],
@@ -119,7 +126,7 @@ pub(crate) fn concat<T: Copy + Send>(
     let all_len = lens.iter().sum();
     memory.reserve(all_len);
     let mut rest = &mut memory.spare_capacity_mut()[..all_len];
-    // Lists may be of one item: several are filled at a time.
+    // Lists may be of one item: a job fills several.
     let (mut jobs, mut first) = (Vec::new(), 0);
     while first < lens.len() {
         let (mut len, mut end) = (0, first);
@@ -141,35 +148,42 @@ pub(crate) fn concat<T: Copy + Send>(
             assert_eq!(places.filled, places.places.len(), "a list has as many items as it says");
         }
     });
-    // SAFETY: the jobs' places are so many from the first on, and each was written, or `each` would
-    // have panicked.
+    // SAFETY: the places of the jobs are the first `all_len` of the memory. Each of
+    // them was written: the assertion in the jobs would have failed otherwise, and
+    // `each` would have panicked.
     unsafe { memory.set_len(all_len) }
     memory
 }
 
-/// Writes a value to all places.
+/// Writes a value to all places, and returns them.
 pub(crate) fn filled<T: Copy + Send + Sync>(places: &mut [MaybeUninit<T>], value: T) -> &mut [T] {
     let mut parts: Vec<_> = places.chunks_mut(PART).collect();
     each(&mut parts, |part| part.fill(MaybeUninit::new(value)));
-    // SAFETY: the parts were all places, and each was written.
+    // SAFETY: the parts are all places, and each was written above.
     unsafe { &mut *(core::ptr::from_mut(places) as *mut [T]) }
 }
 
-/// Makes a list longer by a value.
+/// Extends a list to `len` items with a value; a longer list stays as it is.
 pub(crate) fn extend_to<T: Copy + Send + Sync>(list: &mut Vec<T>, len: usize, value: T) {
     let more = len.saturating_sub(list.len());
     list.reserve(more);
     filled(&mut list.spare_capacity_mut()[..more], value);
-    // SAFETY: the places behind the list were just written.
+    // SAFETY: the `more` places behind the list were just written.
     unsafe { list.set_len(list.len() + more) }
 }
 
-/// Runs `f`, which is about so many items, where [`each`] has `threads` threads; with `None`, those
-/// of the pool it is called in.
+/// Runs `f` where [`each`] has `threads` threads.
 ///
-/// On one of the pool's threads, if others can help: to come from outside for each step takes one thread more than there may be
-/// processors (two threads, a million triangles with `Quality::Fast`: 76 ms instead of 72). Of several that come at the same
-/// time, one may then wait for another to be done.
+/// With `None`, these are the threads of the pool that the function is called in. `items` is about
+/// the number of items that `f` works on.
+///
+/// If others can help, `f` runs on one of the pool's threads. If each step entered the pool from
+/// outside, there would be one thread more than there may be processors (two threads, a million
+/// triangles with `Quality::Fast`: 76 ms instead of 72). Of several callers at the same time, one
+/// may then wait until another is done.
+///
+/// # Errors
+/// [`ThreadPoolError`], if a pool of `threads` threads could not be started.
 #[cfg(feature = "rayon")]
 pub(crate) fn in_pool(
     threads: Option<usize>,
@@ -194,7 +208,7 @@ pub(crate) fn in_pool(
     }
 }
 
-/// Without threads, `f` runs on the caller's.
+/// Runs `f` on the calling thread, since there are no others.
 #[cfg(not(feature = "rayon"))]
 pub(crate) fn in_pool(
     _threads: Option<usize>,
@@ -210,7 +224,7 @@ mod tests {
     use super::*;
     use alloc::vec;
 
-    /// On three threads.
+    /// Runs `f` in a pool of three threads.
     fn on_three<R: Send>(mut f: impl FnMut() -> R + Send) -> R {
         let mut result = None;
         in_pool(Some(3), 3 * PART, &mut || result = Some(f())).unwrap();
@@ -241,7 +255,7 @@ mod tests {
     fn lists_of_any_length_follow_one_another() {
         let lens = [0, 1, PART, 0, 2 * PART, 3];
         let expected: Vec<_> = lens.iter().flat_map(|&len| 0..len).collect();
-        // Of more items than there are places, the first.
+        // There are more items than places: the first are taken.
         let all = on_three(|| concat(Vec::new(), &lens, &|list, places| places.extend(0..lens[list] + 7)));
         assert!(all == expected);
     }

@@ -4,14 +4,16 @@ use crate::geometry::{Aabb, Scalar};
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// No leaf is deeper than this below the root, which has depth 0, whatever the heuristic and the
-/// data: stacks of this size never overflow.
+/// The maximum depth of a leaf; the root has depth 0.
+///
+/// No heuristic and no data exceed it, so stacks of this size never overflow.
 pub const MAX_DEPTH: usize = 64;
 
-/// An inner node: the boxes of its two children side by side, and where the children are.
+/// An inner node: the boxes of its two children side by side, and their places.
 ///
-/// One cache line for f32. `planes[axis][0]` holds the two minima, `planes[axis][1]` the two maxima,
-/// so that the slab test chooses the pair of near planes by the ray's sign, as an address.
+/// For `f32` it is one cache line. `planes[axis][0]` holds the two minima, and
+/// `planes[axis][1]` the two maxima. So the slab test chooses the pair of near planes by the
+/// ray's sign, as an address.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub(crate) struct Node<S> {
@@ -21,8 +23,10 @@ pub(crate) struct Node<S> {
 
 const _: () = assert!(size_of::<Node<f32>>() == 64 && size_of::<Node<f64>>() == 128);
 
-/// Where a child is: a leaf with `count` primitives from slot `first` on, or, if `count` is 0, the
-/// inner node number `first`.
+/// The place of a child: a leaf or an inner node.
+///
+/// If `count` is 0, the child is the inner node number `first`. Else it is a leaf with `count`
+/// primitives from slot `first` on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Child {
     pub first: u32,
@@ -49,7 +53,7 @@ impl Child {
     }
 }
 
-/// A part of a large leaf: a leaf by itself, and its box.
+/// A leaf range: a part of a large leaf, as a leaf by itself with its box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LeafRange<S> {
     pub aabb: Aabb<S>,
@@ -61,7 +65,7 @@ impl<S: Scalar> Node<S> {
         Aabb { min: self.planes.map(|axis| axis[0][side]), max: self.planes.map(|axis| axis[1][side]) }
     }
 
-    /// The box around both children.
+    /// Returns the box around both children.
     pub fn union(&self) -> Aabb<S> {
         self.aabb(0).union(self.aabb(1))
     }
@@ -73,25 +77,30 @@ impl<S: Scalar> Node<S> {
     }
 }
 
-/// A binary bounding volume hierarchy over primitives known by their index alone.
+/// A binary bounding volume hierarchy that knows primitives by their index alone.
 ///
-/// Two trees are equal if they have the same nodes in the same places: what a build promises for
-/// any number of threads. As a layout of [`Bvh`](crate::Bvh) it is traced as it was built: `Bvh<P, Tree>`.
+/// Two trees are equal if they have the same nodes in the same places. A build makes equal
+/// trees on any number of threads. As a layout of [`Bvh`](crate::Bvh) the tree is traced as it
+/// was built: `Bvh<P, Tree>`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tree<S = f32> {
     pub(crate) nodes: Vec<Node<S>>,
     pub(crate) root: Child,
     pub(crate) aabb: Aabb<S>,
-    /// The input's index of each slot's primitive. Leaves are ranges of slots; a primitive may be in several.
+    /// The input index of each slot's primitive.
+    ///
+    /// Leaves are ranges of slots. A primitive may be in several leaves.
     pub(crate) indices: Vec<u32>,
-    /// The parts that large leaves are cut into, for a layout that can divide them; in the order of the slots.
+    /// The leaf ranges of all large leaves, in the order of the slots.
+    ///
+    /// They are for layouts that can divide large leaves.
     pub(crate) leaf_ranges: Vec<LeafRange<S>>,
-    /// How many there are.
+    /// The number of primitives.
     pub(crate) primitives: usize,
 }
 
 impl<S: Scalar> Default for Tree<S> {
-    /// Over nothing.
+    /// Returns an empty tree.
     fn default() -> Self {
         let (nodes, indices, leaf_ranges) = (Vec::new(), Vec::new(), Vec::new());
         Self { nodes, root: Child::default(), aabb: Aabb::EMPTY, indices, leaf_ranges, primitives: 0 }
@@ -99,29 +108,31 @@ impl<S: Scalar> Default for Tree<S> {
 }
 
 impl<S: Scalar> Tree<S> {
-    /// The number of primitives in its leaves.
+    /// Returns the number of primitives in leaves.
     pub fn len(&self) -> usize {
         self.primitives
     }
 
-    /// No primitives in it.
+    /// Returns whether there are no primitives in the tree.
     pub fn is_empty(&self) -> bool {
         self.indices.is_empty()
     }
 
-    /// The box around everything; [`Aabb::EMPTY`] if there is nothing.
+    /// Returns the box around all primitives, or [`Aabb::EMPTY`] if there are none.
     pub fn aabb(&self) -> Aabb<S> {
         self.aabb
     }
 
-    /// Bytes of the nodes, of the indices, and of what a layout is to know of large leaves.
+    /// Returns the memory of nodes, indices and leaf ranges, in bytes.
     pub fn memory_bytes(&self) -> usize {
         size_of::<Node<S>>() * self.nodes.capacity()
             + size_of::<u32>() * self.indices.capacity()
             + size_of::<LeafRange<S>>() * self.leaf_ranges.capacity()
     }
 
-    /// The parts of a leaf; none if it has no runs.
+    /// Returns the leaf ranges of a leaf.
+    ///
+    /// There are none if the build did not cut the leaf.
     pub(crate) fn leaf_ranges(&self, leaf: Child) -> &[LeafRange<S>] {
         let leaf_ranges =
             &self.leaf_ranges[self.leaf_ranges.partition_point(|run| run.leaf.first < leaf.first)..];
@@ -130,7 +141,7 @@ impl<S: Scalar> Tree<S> {
             [..leaf_ranges.iter().take_while(|run| slots.contains(&(run.leaf.first as usize))).count()]
     }
 
-    /// The root, if the tree is not empty.
+    /// Returns the root, or `None` if the tree is empty.
     pub(crate) fn root(&self) -> Option<Child> {
         (!self.is_empty()).then_some(self.root)
     }

@@ -1,5 +1,7 @@
-//! The path without vector instructions answers as the naive loop does, bit for bit. A file of its own, with the feature
-//! `portable`: plain code for sixteen lanes takes long to compile.
+//! Compares the path without vector instructions with the naive loop, bit for bit.
+//!
+//! The test is a program of its own, behind the feature `portable`: portable code for
+//! sixteen lanes takes long to compile.
 #![cfg(feature = "portable")]
 
 mod common {

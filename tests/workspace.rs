@@ -1,4 +1,4 @@
-//! Hierarchies are the same in memory that others have left, and leave it to the next.
+//! Tests of reused workspaces: they give the same hierarchies as new memory.
 
 #[path = "../benches/builds/memory.rs"]
 mod memory;
@@ -21,13 +21,13 @@ fn triangles<S: Scalar>(n: usize) -> Vec<Fast<Triangle<S>>> {
     scattered::triangles(n).into_iter().map(Fast).collect()
 }
 
-/// Tests take turns: one of them counts what all threads allocate.
+/// Locks out the other tests: one of them counts the allocations of all threads.
 fn turn() -> MutexGuard<'static, ()> {
     static TURN: Mutex<()> = Mutex::new(());
     TURN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// In new memory and in the workspace.
+/// Asserts that builds in new memory and in `workspace` give the same hierarchy.
 fn assert_same<S: Scalar, H: Heuristic<S> + Clone, L: Layout<Fast<Triangle<S>>> + PartialEq>(
     what: &str,
     builder: &Builder<Fast<Triangle<S>>, H, L>,
@@ -41,7 +41,7 @@ fn assert_same<S: Scalar, H: Heuristic<S> + Clone, L: Layout<Fast<Triangle<S>>> 
     assert!(old.recycle(workspace) == triangles, "{what}: the primitives come back");
 }
 
-/// With every preset and heuristic.
+/// Calls [`assert_same`] with every preset and heuristic.
 fn assert_all_same<S: Scalar, L: Layout<Fast<Triangle<S>>> + PartialEq>(
     layout: &str,
     triangles: &[Fast<Triangle<S>>],
@@ -57,7 +57,7 @@ fn assert_all_same<S: Scalar, L: Layout<Fast<Triangle<S>>> + PartialEq>(
     }
 }
 
-/// One workspace for all: what was in it is of other sizes and layouts.
+/// All builds share a workspace, so its memory comes from other sizes and layouts.
 #[test]
 fn hierarchies_are_the_same_in_memory_that_others_left() {
     fn with<S: Scalar>(sizes: &[usize]) {
@@ -96,7 +96,10 @@ fn a_workspace_is_good_for_more_after_a_build_that_failed() {
     }
 }
 
-/// Wherever a build is told to stop, with everything: an error, and never less than a whole hierarchy.
+/// A stopped build is an error, and a build that ends is a whole hierarchy.
+///
+/// The progress callback stops the build at its first call, then at its second, and so on, with
+/// every heuristic and two presets.
 #[test]
 fn builds_stop_wherever_they_are_told_to() {
     fn with<H: Heuristic<f32> + Clone, L: Layout<Fast<Triangle>> + PartialEq>(
@@ -137,7 +140,10 @@ fn builds_stop_wherever_they_are_told_to() {
     }
 }
 
-/// Counted in allocations of any time, on one thread: lists of tasks come and go, buffers stay.
+/// Later builds reuse the buffers of earlier ones.
+///
+/// The test measures the peak of allocated bytes on one thread. Each build allocates and frees its
+/// lists of tasks; the buffers stay.
 #[test]
 fn later_builds_take_the_memory_of_earlier_ones() {
     fn is_shared_by_threads<T: Send + Sync>(_: &T) {}
@@ -147,7 +153,8 @@ fn later_builds_take_the_memory_of_earlier_ones() {
         let mut workspace = Workspace::new();
         is_shared_by_threads(&workspace);
         let builder = Bvh::builder().quality(quality).threads(1);
-        // The most that is new while so many are built.
+        // Builds over `count` triangles. Returns the peak of new memory, the bytes of the
+        // hierarchy, and the bytes in the workspace before and after the hierarchy is recycled.
         let mut peak = |count: usize| {
             let input = triangles[..count].to_vec();
             let (bvh, peak) = memory::peak(|| builder.clone().build_in(&mut workspace, input).unwrap());
@@ -157,7 +164,8 @@ fn later_builds_take_the_memory_of_earlier_ones() {
         };
         let (first, ..) = peak(90_000);
         let mut kept = 0;
-        // Small ones do not lose what they cannot use; what grows a little does not need new memory each time.
+        // A small build keeps the buffers that are too large for it. An input that grows a little
+        // does not need new memory each time.
         for count in [90_000, 100, 0, 90_000, 91_000, 92_000, 93_000] {
             let (peak, bytes, left, now) = peak(count);
             assert!(count < 92_000 || now == kept, "{quality:?}, {count}: other memory");
@@ -176,7 +184,10 @@ fn later_builds_take_the_memory_of_earlier_ones() {
     }
 }
 
-/// What is not kept is freed as soon as it can be. References lie in memory that is reserved for the layout: not all of it is touched.
+/// Buffers that are not kept are freed as soon as possible.
+///
+/// References are stored in memory that is reserved for the layout, and a build does
+/// not touch all of that memory.
 #[test]
 fn a_build_without_a_workspace_peaks_no_higher_than_it_has_to() {
     let _turn = turn();

@@ -1,4 +1,6 @@
-//! Rays that find gaps: from points exactly inside, at corners and edges. At random, rays find none.
+//! Rays that find gaps: from points exactly inside, at corners and edges.
+//!
+//! Rays in random directions find none.
 
 use crate::closed::encloses;
 use crate::truth::Truth;
@@ -7,7 +9,7 @@ use glam::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// What a ray is aimed at.
+/// The kind of point that a ray is aimed at.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Target {
     Vertex,
@@ -15,13 +17,15 @@ pub enum Target {
     Edge,
 }
 
-/// The points from which rays are aimed.
+/// The number of points from which rays are aimed.
 const ORIGINS: usize = 16;
 
-/// `n` rays at each kind of target, with t in [0, infinity]. If the mesh is closed, they start inside, else
-/// anywhere in its box. The direction is the difference of target and origin, which is about as well as
-/// one can aim, times a power of two that makes it about 1 long; that of every second ray is normalised,
-/// as renderers' are.
+/// Returns `n` rays at each kind of target, with t in [0, infinity].
+///
+/// If the mesh is closed, rays start inside it, else anywhere in its box. The direction is
+/// the difference of target and origin, which is about as well as one can aim. For half of
+/// the rays it is times a power of two that makes it about 1 long; for the other half it
+/// is normalised, as in renderers.
 pub fn rays(truth: &Truth<'_>, is_closed: bool, n: usize) -> Vec<(Target, Ray)> {
     let mut rng = Pcg32::seed_from_u64(5);
     let origins: Vec<Vec3> = (0..ORIGINS).map(|_| origin(truth, is_closed, &mut rng)).collect();
@@ -46,7 +50,7 @@ pub fn rays(truth: &Truth<'_>, is_closed: bool, n: usize) -> Vec<(Target, Ray)> 
     rays
 }
 
-/// A point of the mesh's box, if it is closed, one exactly inside.
+/// Returns a point of the mesh's box, exactly inside the mesh if that is closed.
 fn origin(truth: &Truth<'_>, is_closed: bool, rng: &mut Pcg32) -> Vec3 {
     let aabb = truth.triangles.iter().fold(Aabb::EMPTY, |aabb, triangle| aabb.union(triangle.aabb()));
     let [min, max] = [aabb.min, aabb.max].map(Vec3::from);
@@ -59,7 +63,7 @@ fn origin(truth: &Truth<'_>, is_closed: bool, rng: &mut Pcg32) -> Vec3 {
     }
 }
 
-/// A power of two: nothing is rounded.
+/// Returns a power of two that makes `way` about 1 long, without rounding.
 fn about_one(way: Vec3) -> f32 {
     let exponent = way.abs().max_element().log2().floor();
     2f32.powi(-exponent as i32)

@@ -1,10 +1,11 @@
 //! The crate `bvh`: its tree and its triangle test.
 //!
-//! Every box that the ray meets is visited: in a torus, `traverse_iterator` was the fastest of its queries, by a
-//! tenth over `traverse` and by half over those that go by distance and can be stopped early. Its
-//! triangle test leaves out triangles seen from behind, so both windings are asked, as other crates'
-//! tests see both sides. The ray is put together from its parts: `Ray::new` would round the direction to
-//! another one first.
+//! The query is `traverse_iterator`, which visits every box that the ray meets and is the fastest
+//! of the crate's queries in a torus (measured: docs/decisions.md, 41).
+//!
+//! The triangle test of the crate leaves out triangles seen from behind. So both windings are
+//! asked, as the tests of other crates see both sides. The ray is put together from its parts,
+//! because `Ray::new` would first round the direction to another one.
 
 use crate::tracer::{Hit, Tracer, smallest};
 use bvh::aabb::{Aabb, Bounded};
@@ -16,13 +17,13 @@ use nalgebra::{Point3, Vector3};
 
 pub struct Peer {
     bvh: Bvh<f32, 3>,
-    /// In the order of the input.
+    /// The faces in the order of the input.
     faces: Vec<Face>,
-    /// The iterator has room for so many levels, and panics beyond.
+    /// Whether the tree is too deep for the iterator, which would panic.
     is_deep: bool,
 }
 
-/// The iterator's stack.
+/// The number of levels on the iterator's stack.
 const LEVELS: usize = 32;
 
 struct Face {
@@ -55,7 +56,7 @@ impl Face {
         Self { corners, aabb, index, node_index: 0 }
     }
 
-    /// Infinite for a miss.
+    /// Returns the t of the hit, infinite for a miss.
     #[inline(always)]
     fn t(&self, ray: &Ray<f32, 3>) -> f32 {
         let [a, b, c] = &self.corners;
@@ -96,7 +97,7 @@ fn depth(bvh: &Bvh<f32, 3>) -> usize {
     deepest
 }
 
-/// With t in [0, infinity]: an interval it does not have.
+/// Converts a ray. The peer's ray has no interval: its t is in [0, infinity].
 #[inline(always)]
 fn convert(ray: &bvhkit::Ray) -> Ray<f32, 3> {
     let direction = Vector3::from(ray.direction);

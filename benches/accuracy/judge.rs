@@ -1,4 +1,4 @@
-//! Everyone's answers to the same rays, compared with the exact ones.
+//! Comparison of all contestants' answers to the same rays with the exact ones.
 
 use crate::aim::{self, Target};
 use crate::mesh::{Mesh, Place};
@@ -11,7 +11,7 @@ use bvhkit::Ray;
 use bvhkit::reference::exact;
 use rayon::prelude::*;
 
-/// How much to do with each mesh at each place.
+/// The amount of work for each mesh at each place.
 #[derive(Clone, Copy)]
 pub struct Amount {
     /// Rays aimed at corners, and as many at edges.
@@ -20,7 +20,7 @@ pub struct Amount {
     pub naive_tests: usize,
 }
 
-/// One mesh at one place: the tallies of all contestants.
+/// The tallies of all contestants for one mesh at one place.
 pub struct Outcome {
     pub mesh: String,
     pub place: Place,
@@ -47,7 +47,7 @@ pub fn judge(mesh: &Mesh, place: Place, contestants: &[Contestant], amount: Amou
 
     let sample = (amount.naive_tests / triangles.len()).clamp(1, rays.len());
     let naive = |i: usize, tallies: &mut [Tally]| {
-        // An odd step, so that both kinds of target are met.
+        // The step is odd, so that both kinds of target occur.
         let (_, ray) = rays[i * ((rays.len() / sample) | 1) % rays.len()];
         assert_eq!(truth.closest_hits(&ray), exact::closest_hits(&triangles, &ray), "{ray:?}");
         for (tracer, tally) in tracers.iter().zip(tallies) {

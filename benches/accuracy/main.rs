@@ -1,10 +1,12 @@
-//! Measures how accurate each way of testing triangles is, and what that costs, against exact arithmetic:
-//! this crate's modes, [obvhs](https://github.com/DGriffin91/obvhs) and
-//! [bvh](https://github.com/svenstaro/bvh).
+//! Measures the accuracy of triangle tests against exact arithmetic, and its cost.
 //!
-//! `cargo bench --bench accuracy` prints two tables and writes `accuracy.csv` and `accuracy.svg` into
-//! `target/accuracy`, or into the folder that the environment variable `BVHKIT_ACCURACY` names. If
-//! `BVHKIT_SCENE` names a scene's file, that is measured too, in a table of its own.
+//! The tests are those of this crate's modes, of [obvhs](https://github.com/DGriffin91/obvhs) and
+//! of [bvh](https://github.com/svenstaro/bvh).
+//!
+//! `cargo bench --bench accuracy` prints two tables. It writes `accuracy.csv` and
+//! `accuracy.svg` into `target/accuracy`, or into the folder that the environment variable
+//! `BVHKIT_ACCURACY` names. If `BVHKIT_SCENE` names the file of a scene, the scene is
+//! measured too, in a table of its own.
 
 mod aim;
 mod bvh_peer;
@@ -49,14 +51,14 @@ use mesh::{Mesh, Place};
 use std::path::PathBuf;
 use tracer::Contestant;
 
-/// How much to do.
+/// The amount of work.
 struct Extent {
     /// Triangles of each mesh whose errors are counted.
     triangles: usize,
     amount: Amount,
-    /// Triangles of the mesh on which the time is taken.
+    /// Triangles of the mesh that is timed.
     timed_triangles: usize,
-    /// Rays of each kind that are timed.
+    /// Timed rays of each kind.
     timed_rays: usize,
     repetitions: usize,
 }
@@ -120,7 +122,7 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// In the build folder, wherever that is.
+/// Returns a folder in the build folder.
 fn default_folder() -> PathBuf {
     PathBuf::from(env!("CARGO_TARGET_TMPDIR")).with_file_name("accuracy")
 }

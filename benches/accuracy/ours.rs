@@ -1,10 +1,10 @@
-//! This crate's modes, the default tree over each.
+//! This crate's modes, each in the default tree.
 
 use crate::tracer::{Contestant, Hit, Tracer};
 use bvhkit::reference::{self, exact::Fraction};
 use bvhkit::{Bvh, Fast, Intersect, Precise, Ray, Scalar, Triangle};
 
-/// What a triangle is by itself.
+/// The mode of a plain triangle.
 pub const DEFAULT: &str = "Watertight";
 
 pub fn contestants() -> [Contestant; 4] {
@@ -34,7 +34,7 @@ fn double(triangle: &Triangle) -> Triangle<f64> {
     Triangle { a, b, c }
 }
 
-/// The same ray: nothing is rounded.
+/// Converts a ray without rounding.
 fn convert<S: Scalar>(ray: &Ray) -> Ray<S> {
     let [origin, direction] =
         [ray.origin, ray.direction].map(|point| point.map(|x| S::from_f64(f64::from(x))));

@@ -19,7 +19,7 @@ fn peer(name: &'static str, build: fn(&[Triangle]) -> Box<dyn Tracer>) -> Contes
     Contestant { name, ours: false, build }
 }
 
-/// By its middle preset.
+/// Builds a tree of `obvhs` with its medium preset.
 fn obvhs<B: Traversal + Sync + 'static>(
     triangles: &[Triangle],
     build: fn(BvhBuildParams, &[obvhs::triangle::Triangle]) -> Peer<B>,
@@ -31,7 +31,7 @@ fn obvhs<B: Traversal + Sync + 'static>(
 
 struct Obvhs<B> {
     peer: Peer<B>,
-    /// In the order of the input.
+    /// The triangles in the order of the input.
     triangles: Vec<RtTriangle>,
 }
 

@@ -1,4 +1,4 @@
-//! The trade at a glance: speed against leaks.
+//! A plot of speed against leaks.
 
 use crate::judge::Outcome;
 use crate::labels::Labels;
@@ -17,13 +17,13 @@ const NOTES: [&str; 2] = [
     "open: no leak found, drawn at 3/N, below which the rate is at 95 %",
 ];
 
-/// One contestant.
+/// The mark of one contestant.
 struct Point {
     label: String,
     color: RGBColor,
     speed: f64,
     leaks: Count,
-    /// The least and the largest rate of leaks at one place.
+    /// The smallest and the largest rate of leaks at one place.
     range: [f64; 2],
 }
 
@@ -66,7 +66,7 @@ pub fn draw(path: &Path, contestants: &[Contestant], speeds: &[f64], outcomes: &
     for point in &points {
         let (x, y) = (point.speed, point.shown());
         let is_found = point.leaks.found > 0;
-        // From the best place to the worst.
+        // The bar goes from the best place to the worst.
         let bar = if is_found { point.range.map(|rate| (x, rate.max(floor))) } else { [(x, y); 2] };
         chart.draw_series([PathElement::new(bar, point.color.mix(0.4).stroke_width(2))])?;
         let style = ShapeStyle { color: point.color.into(), filled: is_found, stroke_width: 2 };

@@ -1,4 +1,4 @@
-//! Rays that set out from the surface, as bounces and shadow rays do.
+//! Rays that start on the surface, as bounces and shadow rays do.
 
 use bvhkit::{Bvh, Corners, Ray, Triangle};
 use glam::Vec3;
@@ -6,17 +6,21 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
-/// The least angle to the surface, in radians; others are as many in each decade.
+/// The smallest angle to the surface, in radians.
+///
+/// Each decade of larger angles has the same share of rays.
 const GRAZING: f32 = 1e-4;
 
-/// A ray from each hit of `rays` (in the default mode), and the triangle that it leaves, on either side.
+/// Returns a ray from each hit of `rays`, and the triangle that the ray leaves.
+///
+/// The hits are those of the default mode. The rays leave on either side.
 pub fn spawned(triangles: &[Triangle], rays: impl Iterator<Item = Ray>) -> Vec<(usize, Ray)> {
     let mut rng = Pcg32::seed_from_u64(6);
     let bvh = Bvh::build(triangles).expect("the coordinates are finite");
     let spawn = |ray| {
         let hit = bvh.closest_hit(&ray)?;
         let point = triangles[hit.index].surface_point(hit.payload);
-        // None for a triangle without area.
+        // A triangle without area has no normal.
         let normal = Vec3::from(point.normal).try_normalize()?;
         let (u, v) = normal.any_orthonormal_pair();
         let (around_v, around_u) = (TAU * rng.random::<f32>()).sin_cos();

@@ -1,4 +1,4 @@
-//! All that was counted, as a sheet: a row for each contestant, mesh and place.
+//! All counts as a CSV sheet: a row for each contestant, mesh and place.
 
 use crate::judge::Outcome;
 use crate::tally::Count;

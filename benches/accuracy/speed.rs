@@ -1,4 +1,4 @@
-//! How fast each is, on one thread.
+//! The speed of each contestant, on one thread.
 
 use crate::support::rays::Rays;
 use crate::support::scenes::NamedScene;
@@ -6,8 +6,9 @@ use crate::timing;
 use crate::tracer::Contestant;
 use std::hint::black_box;
 
-/// Millions of closest hits a second for each contestant: primary, diffuse, shadow and random rays, `rays`
-/// of each.
+/// Returns millions of closest hits per second for each contestant.
+///
+/// The rays are primary, diffuse, shadow and random, `rays` of each kind.
 pub fn mega_rays(
     scene: &NamedScene,
     contestants: &[Contestant],

@@ -1,4 +1,4 @@
-//! The tables: what was counted in all, and leaks by place.
+//! The tables: counts over all meshes, and leaks by place.
 
 use crate::columns;
 use crate::judge::Outcome;
@@ -58,7 +58,7 @@ pub fn print(contestants: &[Contestant], speeds: &[f64], outcomes: &[Outcome]) {
     println!("{leaks}");
 }
 
-/// One more mesh, which is not in the totals.
+/// Prints a table for a mesh that is not in the totals.
 pub fn print_file(contestants: &[Contestant], mesh: &Mesh, outcome: &Outcome) {
     println!("\n{}, {} triangles:", mesh.name, mesh.triangles.len());
     if !mesh.is_closed {

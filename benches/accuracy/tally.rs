@@ -1,11 +1,11 @@
-//! What is counted.
+//! Counts of errors.
 
 use crate::judge::Outcome;
 use crate::mesh::Place;
 use std::fmt;
 use std::ops::AddAssign;
 
-/// So many of all that were looked at.
+/// The number of cases found, of all cases examined.
 #[derive(Clone, Copy, Default)]
 pub struct Count {
     pub found: u64,
@@ -18,7 +18,7 @@ impl Count {
         self.of += 1;
     }
 
-    /// The share of what was found.
+    /// Returns the share of the cases found.
     pub fn rate(self) -> f64 {
         self.found as f64 / self.of as f64
     }
@@ -37,7 +37,7 @@ impl fmt::Display for Count {
     }
 }
 
-/// The errors of one contestant. See the table's legend.
+/// The errors of one contestant, explained in the legend of the table.
 #[derive(Clone, Default)]
 pub struct Tally {
     pub vertex_leaks: Count,
@@ -45,10 +45,10 @@ pub struct Tally {
     pub false_hits: Count,
     /// The largest edge slack of a false hit.
     pub slack: f64,
-    /// By how many roundings of the distance a false hit's triangle is missed, at the most.
+    /// The largest distance of a ray from the triangle of its false hit, in roundings.
     pub beside: f64,
     pub wrong: Count,
-    /// The size of each true hit's error of t, in ulps.
+    /// The size of the error of t, in ulps, of each true hit.
     pub ulps: Vec<f32>,
     pub self_hits: Count,
     pub unlike_naive: Count,
@@ -61,7 +61,7 @@ impl Tally {
         leaks
     }
 
-    /// The error of t that half of the true hits, 99 of 100, and all keep to.
+    /// Returns the errors of t that half, 99 of 100, and all of the true hits keep to.
     pub fn quantiles(&self) -> Option<[f32; 3]> {
         let mut sorted = self.ulps.clone();
         sorted.sort_unstable_by(f32::total_cmp);
@@ -84,7 +84,7 @@ impl AddAssign<&Self> for Tally {
     }
 }
 
-/// The tallies of several contestants, each added to its own.
+/// Adds the tallies of several contestants, each to its own.
 pub fn merge(mut into: Vec<Tally>, from: Vec<Tally>) -> Vec<Tally> {
     for (into, from) in into.iter_mut().zip(&from) {
         *into += from;
@@ -92,7 +92,7 @@ pub fn merge(mut into: Vec<Tally>, from: Vec<Tally>) -> Vec<Tally> {
     into
 }
 
-/// The leaks of contestant `i` at each place, of all meshes together.
+/// Returns the leaks of contestant `i` at each place, over all meshes.
 pub fn by_place(outcomes: &[Outcome], i: usize) -> Vec<(Place, Count)> {
     let mut places: Vec<(Place, Count)> = Vec::new();
     for Outcome { place, tallies, .. } in outcomes {

@@ -1,4 +1,4 @@
-//! What rays hit in exact arithmetic.
+//! The hits of rays in exact arithmetic.
 
 use bvhkit::reference::exact::{self, Exact, ExactHit};
 use bvhkit::{Bvh, Ray, Triangle};
@@ -14,11 +14,11 @@ impl<'a> Truth<'a> {
         Self { triangles, bvh }
     }
 
-    /// As [`exact::closest_hits`].
+    /// Returns the same as [`exact::closest_hits`].
     pub fn closest_hits(&self, ray: &Ray) -> Vec<ExactHit> {
         let mut hits = self.bvh.hits(ray).peekable();
         let Some(first) = hits.peek().map(|hit| hit.t) else { return Vec::new() };
-        // Only those that are equal once rounded can be the exactly nearest.
+        // Only hits with the smallest rounded t can be the exactly nearest.
         let mut candidates: Vec<usize> = hits.take_while(|hit| hit.t == first).map(|hit| hit.index).collect();
         candidates.sort_unstable();
         let triangles: Vec<Triangle> = candidates.iter().map(|&index| self.triangles[index]).collect();

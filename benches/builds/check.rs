@@ -1,4 +1,4 @@
-//! Checks trees, and takes down what they are, before anyone's time is taken.
+//! Checks trees and records their facts, before anything is timed.
 
 use crate::agreement::{Answers, assert_exact};
 use crate::memory::peak;
@@ -9,7 +9,7 @@ use glam::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// Few: where all triangles overlap, each ray of a tree meets them all.
+/// Maximum number of rays. Where all triangles overlap, each ray meets them all.
 const MAX_RAYS: usize = 32;
 
 /// Triangles, and rays with the naive reference's answers.
@@ -20,11 +20,13 @@ pub struct Scene {
     naive: Answers,
 }
 
-/// What a method makes of a scene, in bytes per triangle. The same on every machine, but for a peak of several threads.
+/// The depth of a method's tree over a scene, and its memory in bytes per triangle.
+///
+/// Facts are the same on every machine, except for the peak of several threads.
 pub struct Facts {
-    /// What a build has allocated at the most, beside the triangles: on one thread, on all.
+    /// The peak of allocations beside the triangles, on one thread and on all.
     pub peaks: [f64; 2],
-    /// What stays, with the triangles.
+    /// The memory of the result, with the triangles.
     pub bytes: f64,
     pub depth: usize,
 }
@@ -37,8 +39,12 @@ impl Scene {
         Self { name, triangles, rays, naive }
     }
 
+    /// Builds a method's tree on one thread and on all, and returns its facts.
+    ///
     /// # Panics
-    /// If a tree is broken, or not the same on all threads, or answers otherwise than the naive reference.
+    ///
+    /// If a tree is broken, or not the same on all threads, or answers
+    /// otherwise than the naive reference.
     pub fn facts(&self, method: &Method, pools: &Pools) -> Facts {
         let what = format!("{} {} of {} {}", method.layout, method.preset, self.triangles.len(), self.name);
         let per_triangle = |bytes: usize| bytes as f64 / self.triangles.len() as f64;
@@ -54,12 +60,14 @@ impl Scene {
     }
 }
 
-/// From around the triangles: every other one to one of them, which may be too small to meet otherwise, the rest to
-/// anywhere.
+/// Returns rays from around the triangles.
+///
+/// Every other ray aims at a triangle, which may be too small to be hit
+/// otherwise. The rest aim anywhere.
 fn rays(triangles: &[Triangle], count: usize) -> Vec<Ray> {
     let mut rng = Pcg32::seed_from_u64(7);
     let aabb = triangles.iter().fold(Aabb::EMPTY, |aabb, triangle| aabb.union(triangle.aabb()));
-    // Boxes may be flat: a cube around them.
+    // A cube around the scene, whose box may be flat.
     let (center, size) = (Vec3::from(aabb.center()), aabb.extent().into_iter().fold(0.0, f32::max));
     let ray = |i: usize| {
         let mut place = || center + size * (Vec3::from_array(rng.random()) - 0.5);

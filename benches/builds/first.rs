@@ -1,4 +1,4 @@
-//! The first build against later ones, in new memory and in memory that earlier ones left.
+//! The first build against later builds, in new memory and in a workspace.
 
 use crate::check::Scene;
 use crate::columns::{self, decimal};
@@ -24,7 +24,7 @@ pub fn print(extent: &Extent, pools: &Pools, methods: &[Method]) {
         let items: Vec<_> = triangles.iter().copied().map(Fast).collect();
         let times = methods[..2].iter().map(|method| times(method, &items, extent.repetitions(size), pools));
         let times: Vec<_> = times.collect();
-        // Only now: this builds too. What fails here is not printed.
+        // The check comes after the timing, because it builds too. If it fails, nothing is printed.
         let scene = Scene::new("soup", triangles, extent);
         for (method, times) in methods.iter().zip(times) {
             scene.facts(method, pools);
@@ -37,10 +37,10 @@ pub fn print(extent: &Extent, pools: &Pools, methods: &[Method]) {
     println!("\n{LEGEND}\n\n{table}");
 }
 
-/// The first build's, later ones', and those in a workspace.
+/// Returns the times of the first build, later builds, and builds in a workspace.
 fn times(method: &Method, items: &[Item], repetitions: usize, pools: &Pools) -> [Duration; 3] {
     pools[0].install(|| {
-        // What is to be built of, what was built last, and what that leaves to the next.
+        // The input of the next build, the last hierarchy, and the memory that it leaves.
         let triangles = Cell::new(Vec::new());
         let last = Cell::new(None::<Box<dyn Built>>);
         let workspace = RefCell::new(Workspace::new());

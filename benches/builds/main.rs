@@ -1,8 +1,10 @@
-//! Builds hierarchies: of many sizes, and over input that is nasty; their times, what they allocate, and what they are.
+//! Times builds of many sizes and over nasty input, with their memory and depth.
 //!
-//! `cargo bench --bench builds` prints tables in Markdown. No time is printed before the tree was checked, and its answers
-//! compared with the naive reference's. The environment variable `BVHKIT_TRIANGLES` is the largest number of triangles,
-//! ten million unless set; `RAYON_NUM_THREADS` tells how many threads all are.
+//! `cargo bench --bench builds` prints tables in Markdown. No time is printed before the tree is
+//! checked and its answers are compared with those of the naive reference.
+//!
+//! The environment variable `BVHKIT_TRIANGLES` is the largest number of triangles, ten million by
+//! default. `RAYON_NUM_THREADS` is the number of threads where all are used.
 
 mod check;
 mod first;
@@ -29,17 +31,17 @@ mod timing;
 use anyhow::{Context, Result};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// How much to do.
+/// The amount of work.
 struct Extent {
-    /// Triangles, by name; a surface may have a few less.
+    /// Numbers of triangles. A surface may have a few less.
     sizes: Vec<usize>,
-    /// Triangles of each list of nasty ones.
+    /// Triangles of each nasty list.
     nasty: usize,
     /// Tests of one triangle that the naive reference may spend on a list.
     naive_tests: usize,
-    /// Triangles that each way to build is timed on, over all repetitions.
+    /// Triangles that each method builds over for its times, in all repetitions.
     timed: usize,
-    /// The least and the largest number of repetitions.
+    /// The smallest and the largest number of repetitions.
     repetitions: (usize, usize),
 }
 
@@ -49,13 +51,15 @@ impl Extent {
         Self { sizes, nasty: 200_000, naive_tests: 100_000_000, timed: 10_000_000, repetitions: (3, 15) }
     }
 
-    /// Just enough to see that everything runs; the larger size is one that threads share.
+    /// Returns just enough work to see that everything runs.
+    ///
+    /// The larger size is one that threads share.
     fn test() -> Self {
         let sizes = vec![300, 20_000];
         Self { sizes, nasty: 1_000, naive_tests: 1_000_000, timed: 0, repetitions: (2, 2) }
     }
 
-    /// The largest number of triangles, in place of larger ones.
+    /// Replaces numbers of triangles above `largest` by `largest`.
     fn limit(&mut self, largest: usize) {
         for size in self.sizes.iter_mut().chain([&mut self.nasty]) {
             *size = largest.min(*size);
@@ -68,7 +72,7 @@ impl Extent {
     }
 }
 
-/// One thread, and all.
+/// A pool of one thread, and a pool of all.
 type Pools = [ThreadPool; 2];
 
 fn main() -> Result<()> {
@@ -85,7 +89,7 @@ fn main() -> Result<()> {
     let pool = |threads| ThreadPoolBuilder::new().num_threads(threads).build();
     let pools = [pool(1)?, pool(0)?];
     let methods = methods::all();
-    // Before everything else, or its first build would not be the first.
+    // First, because its first build has to be the first of the process.
     first::print(&extent, &pools, &methods);
     sizes::print(&extent, &pools, &methods);
     nasty_table::print(&extent, &pools, &methods);

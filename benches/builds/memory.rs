@@ -1,4 +1,4 @@
-//! How much memory a build has allocated at the most: an allocator that counts while it is told to.
+//! An allocator that measures the peak of a build's memory.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicBool, AtomicIsize, Ordering::Relaxed};
@@ -6,15 +6,20 @@ use std::sync::atomic::{AtomicBool, AtomicIsize, Ordering::Relaxed};
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// The system's, and a flag to look at, which no time shows: counts are kept in builds that are not timed.
+/// The system's allocator, which counts bytes while a flag is set.
+///
+/// Only builds that are not timed are counted. The look at the flag does not
+/// show in the times of the others.
 struct Counting;
 
 static IS_COUNTING: AtomicBool = AtomicBool::new(false);
-/// Bytes more than when counting began; less than none when older memory is freed.
+/// Bytes more than when counting began; negative when older memory is freed.
 static NOW: AtomicIsize = AtomicIsize::new(0);
 static PEAK: AtomicIsize = AtomicIsize::new(0);
 
-/// What comes of `build`, and how many bytes more than before there were at the most. All threads count.
+/// Returns the result of `build` and the peak of bytes above those at its start.
+///
+/// Allocations of all threads count.
 pub fn peak<T>(build: impl FnOnce() -> T) -> (T, usize) {
     NOW.store(0, Relaxed);
     PEAK.store(0, Relaxed);
@@ -31,7 +36,7 @@ fn count(bytes: isize) {
     }
 }
 
-/// Counts the new memory if there is any.
+/// Counts new memory, if there is any, and returns it.
 fn counted(memory: *mut u8, bytes: isize) -> *mut u8 {
     if !memory.is_null() {
         count(bytes);
@@ -39,27 +44,33 @@ fn counted(memory: *mut u8, bytes: isize) -> *mut u8 {
     memory
 }
 
-// SAFETY: the system's allocator does everything, and is told what this one is told.
+// SAFETY: every method passes its arguments on to the system's allocator, which keeps the contract.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: our caller's promises are the same.
+        // SAFETY: the caller of this method keeps the same contract as
+        // that of the system's allocator.
         counted(unsafe { System.alloc(layout) }, layout.size() as isize)
     }
 
-    /// Not by `alloc`: the system has pages that are zero already.
+    /// Allocates without `alloc`, since the system has pages that are zero already.
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        // SAFETY: our caller's promises are the same.
+        // SAFETY: the caller of this method keeps the same contract as
+        // that of the system's allocator.
         counted(unsafe { System.alloc_zeroed(layout) }, layout.size() as isize)
     }
 
-    /// Not by `alloc` either: the system moves pages without copying them, and so counts the difference alone.
+    /// Reallocates without `alloc`, since the system moves pages without copying them.
+    ///
+    /// For the same reason, only the difference in size is counted.
     unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        // SAFETY: our caller's promises are the same.
+        // SAFETY: the caller of this method keeps the same contract as
+        // that of the system's allocator.
         counted(unsafe { System.realloc(memory, layout, size) }, size as isize - layout.size() as isize)
     }
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        // SAFETY: our caller's promises are the same.
+        // SAFETY: the caller of this method keeps the same contract as
+        // that of the system's allocator.
         unsafe { System.dealloc(memory, layout) }
         count(-(layout.size() as isize));
     }

@@ -1,4 +1,4 @@
-//! What is measured: ways to build, and what they build.
+//! The measured methods of building, and the hierarchies that they build.
 
 use crate::agreement::{Answers, bare};
 use bvhkit::heuristic::{Heuristic, SpatialSah};
@@ -6,32 +6,36 @@ use bvhkit::{
     Builder, Bvh, CompactTree, Fast, Quality, Ray, Traverse, Tree, TreeReport, Triangle, WideTree, Workspace,
 };
 
-/// The mode that has the least to do beside the build.
+/// A primitive in the mode that has the least work beside the build.
 pub type Item = Fast<Triangle>;
 
-/// A way to build, on the threads of the pool that it is called in.
+/// A method of building, on the threads of the pool that it is called in.
 pub struct Method {
     pub layout: &'static str,
     pub preset: &'static str,
     build: Box<Build>,
 }
 
-/// In memory that others left, if there is any.
+/// A build, in the memory of a workspace if there is one.
 type Build = dyn Fn(Option<&mut Workspace>, Vec<Item>) -> Box<dyn Built> + Sync;
 
 impl Method {
-    /// Keeps the list, so that what it allocates is all beside the triangles.
+    /// Builds a hierarchy that keeps the list of triangles.
+    ///
+    /// So all memory that the build allocates is beside the triangles.
     pub fn build(&self, triangles: Vec<Item>) -> Box<dyn Built> {
         (self.build)(None, triangles)
     }
 
-    /// The same in memory that others left.
+    /// Builds the same hierarchy in the memory of a workspace.
     pub fn build_in(&self, workspace: &mut Workspace, triangles: Vec<Item>) -> Box<dyn Built> {
         (self.build)(Some(workspace), triangles)
     }
 }
 
-/// The default layout's first, and of each layout the default preset second.
+/// Returns the methods of all layouts, those of the default layout first.
+///
+/// In each layout, the default preset is second.
 pub fn all() -> Vec<Method> {
     let layouts = [of::<WideTree>("wide"), of::<CompactTree>("compact"), of::<Tree>("binary")];
     layouts.into_iter().flatten().collect()
@@ -65,14 +69,17 @@ where
 
 /// A hierarchy that was built.
 pub trait Built: Send {
+    /// Checks the invariants.
+    ///
     /// # Panics
+    ///
     /// If an invariant is broken.
     fn check(&self, what: &str);
     fn answers(&self, rays: &[Ray]) -> Answers;
     fn report(&self) -> TreeReport;
-    /// With the triangles.
+    /// Returns the bytes of memory, with the triangles.
     fn bytes(&self) -> usize;
-    /// Gives the triangles back.
+    /// Leaves the memory to the workspace and returns the triangles.
     fn recycle(self: Box<Self>, workspace: &mut Workspace) -> Vec<Item>;
 }
 

@@ -1,4 +1,4 @@
-//! Triangles that are hard to put into a tree, or would be for a careless builder.
+//! Triangles that are hard to build over, or would be for a careless builder.
 
 use crate::scenes::soup::{self, cube, triangle};
 use bvhkit::Triangle;
@@ -6,7 +6,7 @@ use glam::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// One list of each kind, each of `n`. The first is well-behaved.
+/// Returns one list of `n` triangles of each kind. The first is well-behaved.
 pub fn all(n: usize) -> Vec<(&'static str, Vec<Triangle>)> {
     let soup = soup::scattered(n);
     let mut sorted = soup.clone();
@@ -38,20 +38,24 @@ fn list(n: usize, mut triangle: impl FnMut(usize, &mut Pcg32) -> Triangle) -> Ve
     (0..n).map(|i| triangle(i, &mut rng)).collect()
 }
 
-/// The middle of its box is the origin, exactly.
+/// Returns a triangle whose box has its center exactly at the origin.
 fn around_zero(size: f32) -> Triangle {
     let corners = [Vec3::new(-1.0, -1.0, -1.0), Vec3::new(1.0, -0.3, 0.2), Vec3::new(0.1, 1.0, 1.0)];
     let [a, b, c] = corners.map(|corner| size * corner);
     Triangle::new(a, b, c)
 }
 
-/// Half as long as the cube is wide, a millionth wide, in any direction.
+/// Returns a triangle half as long as the cube and a millionth wide.
+///
+/// It has any direction.
 fn sliver(rng: &mut Pcg32) -> Triangle {
     let (start, along, across) = (cube(rng), cube(rng) - 0.5, cube(rng) - 0.5);
     Triangle::new(start, start + along, start + 0.5 * along + 1e-6 * across)
 }
 
-/// Lies on a sphere about the origin, which it covers with others.
+/// Returns a triangle on a sphere around the origin.
+///
+/// Many such triangles cover the sphere.
 fn on_sphere(radius: f32, rng: &mut Pcg32) -> Triangle {
     let away = (cube(rng) - 0.5).normalize_or(Vec3::X);
     let (right, up) = away.any_orthonormal_pair();
@@ -59,12 +63,12 @@ fn on_sphere(radius: f32, rng: &mut Pcg32) -> Triangle {
     Triangle::new(center, center + size * right, center + size * up)
 }
 
-/// With a corner at `at`.
+/// Returns a horizontal triangle with a corner at `at`.
 fn level(at: Vec3, size: f32) -> Triangle {
     Triangle::new(at, at + size * Vec3::X, at + size * Vec3::Z)
 }
 
-/// Far smaller than the gap to the next.
+/// Returns a triangle that is far smaller than the gap to the next.
 fn growing(x: f32) -> Triangle {
     let (at, size) = (x * Vec3::X, 1e-6 * x);
     Triangle::new(at, at + size * Vec3::Y, at + size * Vec3::ONE)

@@ -1,4 +1,4 @@
-//! Nasty input: how long it takes over what is well-behaved, and what becomes of it.
+//! Tables of nasty input: its time over that of the soup, depth and memory.
 
 use crate::check::{Facts, Scene};
 use crate::columns::{self, decimal};
@@ -7,9 +7,9 @@ use crate::timing::interleaved;
 use crate::{Extent, Pools, nasty};
 use std::cell::Cell;
 
-/// Longer over the soup than this is told.
+/// Ratios of times above this one are reported.
 const LIMIT: f64 = 3.0;
-/// No more, for some take long.
+/// Maximum number of repetitions, for some builds take long.
 const REPETITIONS: usize = 3;
 
 pub fn print(extent: &Extent, pools: &Pools, methods: &[Method]) {
@@ -53,7 +53,7 @@ pub fn print(extent: &Extent, pools: &Pools, methods: &[Method]) {
     );
 }
 
-/// Seconds for each list.
+/// Returns the seconds for each list.
 fn times(method: &Method, scenes: &[Scene], pools: &Pools, repetitions: usize) -> Vec<f64> {
     let input = Cell::new(Vec::new());
     let prepare = |i: usize| input.set(scenes[i].triangles.clone());

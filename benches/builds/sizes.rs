@@ -1,4 +1,4 @@
-//! By size: time, on one thread and on all, and memory.
+//! A table by size: the time on one thread and on all, and the memory.
 
 use crate::check::{Facts, Scene};
 use crate::columns::{decimal, table};
@@ -23,7 +23,7 @@ const HEADER: [&str; 11] = [
     "depth",
 ];
 
-/// Of how many triangles, about; from how many.
+/// Makes a scene of about so many triangles.
 type Make = fn(usize) -> Vec<Triangle>;
 
 const SCENES: [(&str, Make); 2] = [("soup", soup::scattered), ("surface", surface::closed_mesh)];
@@ -47,7 +47,7 @@ fn rows(scene: &Scene, extent: &Extent, pools: &Pools, methods: &[Method]) -> Ve
     let triangles = scene.triangles.len();
     let facts: Vec<Facts> = methods.iter().map(|method| scene.facts(method, pools)).collect();
     let input = Cell::new(Vec::new());
-    // Each method on one thread, then on all.
+    // Each method runs on one thread, then on all.
     let times = interleaved(
         2 * methods.len(),
         extent.repetitions(triangles),

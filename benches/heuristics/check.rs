@@ -1,25 +1,30 @@
-//! Compares everyone's answers, before anyone's time is taken.
+//! Comparison of all methods' answers, before anything is timed.
 
 use crate::hierarchy::{Hierarchy, Method};
 use crate::shared::agreement::{Answers, Disagreements, assert_exact};
 use crate::workload::Workload;
 use bvhkit::Ray;
 
-/// Tests of one triangle that the naive reference may spend on a scene: a few seconds.
+/// Tests of one triangle that the naive reference may spend on a scene.
+///
+/// They take a few seconds.
 const NAIVE_TESTS: usize = 300_000_000;
 
-/// Who answered how many rays otherwise than expected.
+/// For each method, the rays that it answers otherwise than expected.
 pub struct Check {
-    /// How many rays the naive reference answered too.
+    /// The number of rays that the naive reference answers too.
     pub sample: usize,
-    /// For each method: against the naive reference, on the sample.
+    /// For each method: the disagreements with the naive reference, on the sample.
     pub from_naive: Vec<Disagreements>,
-    /// For each method: against ours, on all rays.
+    /// For each method: the disagreements with ours, on all rays.
     pub from_ours: Vec<Disagreements>,
 }
 
 impl Check {
+    /// Compares the answers of all methods.
+    ///
     /// # Panics
+    ///
     /// If ours do not agree, bit for bit, with the naive reference and with each other.
     pub fn new(workload: &Workload, methods: &[Method], built: &[Box<dyn Hierarchy>]) -> Self {
         let triangles = &workload.triangles;

@@ -6,7 +6,9 @@ use crate::workload::Workload;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion};
 
-/// `size` is the number of triangles by name; the scene may have a few less.
+/// Measures builds and queries of a scene.
+///
+/// `size` is the nominal number of triangles; the scene may have a few less.
 pub fn measure(criterion: &mut Criterion, size: usize, workload: &Workload, methods: &[Method]) {
     let Workload { name, triangles, closest, any } = workload;
     let mut group = |query: &str, elements: usize, bench: &dyn Fn(&mut BenchmarkGroup<'_, WallTime>)| {

@@ -1,17 +1,17 @@
-//! What is measured: ways to build a hierarchy, whoever wrote it, and the hierarchies they build.
+//! The measured methods of building, whoever wrote them, and their hierarchies.
 
 use crate::shared::agreement::{Answers, Hit};
 use bvhkit::{Ray, Triangle};
 
-/// One build, which can be repeated.
+/// A build that can be repeated.
 pub type Build = Box<dyn Fn() -> Box<dyn Hierarchy>>;
 
-/// A way to build.
+/// A method of building.
 pub struct Method {
     pub name: &'static str,
-    /// Ours, whose answers are promised to be the naive reference's; or a peer's.
+    /// Whether it is this crate's, which promises the naive reference's answers.
     pub ours: bool,
-    /// Takes the triangles in its own format, outside of the time of the build.
+    /// Converts the triangles to the method's own format, which is not timed.
     pub prepare: fn(&[Triangle]) -> Build,
 }
 
@@ -21,11 +21,13 @@ pub trait Hierarchy {
 
     fn any_hit(&self, ray: &Ray) -> bool;
 
-    /// The tree's shape, and the mean steps to the closest hits of `rays`.
+    /// Returns the tree's shape, and the mean steps to the closest hits of `rays`.
     fn statistics(&self, rays: &[Ray]) -> Statistics;
 
-    /// The loops are part of the trait so that each implementation has its own, with its queries
-    /// inlined: a virtual call for each batch, none for each ray.
+    /// Writes the closest hit of each ray into `hits`.
+    ///
+    /// The loops are part of the trait, so that each implementation has its own, with its queries
+    /// inlined. There is a virtual call for each batch, none for each ray.
     fn closest_hits(&self, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {
         hits.clear();
         hits.extend(rays.iter().map(|ray| self.closest_hit(ray)));
@@ -44,12 +46,12 @@ pub trait Hierarchy {
     }
 }
 
-/// `None` for what a hierarchy does not tell.
+/// Figures of a hierarchy, `None` for those it does not tell.
 #[derive(Default)]
 pub struct Statistics {
-    /// As [`bvhkit::TreeReport`] defines it.
+    /// The SAH cost, as [`bvhkit::TreeReport`] defines it.
     pub sah_cost: Option<f64>,
-    /// As [`bvhkit::Bvh::epo`] defines it.
+    /// The end-point overlap, as [`bvhkit::Bvh::epo`] defines it.
     pub epo: Option<f64>,
     pub max_depth: Option<usize>,
     pub nodes_per_ray: Option<f64>,

@@ -1,10 +1,12 @@
-//! Builds and traces with every heuristic, and with `obvhs`, on procedural scenes and, if the
-//! environment variable `BVHKIT_SCENE` names a file, on that.
+//! Builds and traces with every heuristic, and with `obvhs`.
+//!
+//! The scenes are procedural ones and the file that the environment variable
+//! `BVHKIT_SCENE` names, if it is set.
 //!
 //! `cargo bench --bench heuristics` measures with criterion, then prints one table of everything
-//! side by side, whose times are taken after the answers were compared with the naive reference's.
-//! All of it runs on one thread. A filter, such as `-- build/terrain`, applies to criterion alone:
-//! one that matches nothing leaves the table.
+//! side by side. Its times are taken after the answers are compared with those of the naive
+//! reference. All of it runs on one thread. A filter, such as `-- build/terrain`, applies to
+//! criterion alone: one that matches nothing leaves the table.
 
 mod check;
 mod groups;
@@ -22,7 +24,7 @@ mod support;
 use hierarchy::Method;
 use workload::Workload;
 
-/// How much to do.
+/// The amount of work.
 struct Extent {
     /// Triangles of the procedural scenes that criterion measures.
     sizes: &'static [usize],
@@ -32,7 +34,7 @@ struct Extent {
     table_size: usize,
     /// Rays of each kind for the table.
     table_rays: usize,
-    /// How often the table's measurements are repeated.
+    /// Repetitions of the table's measurements.
     repetitions: usize,
 }
 

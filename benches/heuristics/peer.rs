@@ -1,4 +1,4 @@
-//! `obvhs` as a method: its presets, timed from triangles in its own format.
+//! `obvhs` as methods: its presets, timed from triangles in its own format.
 
 use crate::hierarchy::{Build, Hierarchy, Method, Statistics};
 use crate::shared::agreement::Hit;
@@ -57,9 +57,9 @@ impl<B: Shape> Hierarchy for Peer<B> {
     }
 }
 
-/// What only this bench asks of its trees.
+/// Properties of a peer's tree that only this bench asks for.
 trait Shape: Traversal {
-    /// The SAH cost and the depth.
+    /// Returns the SAH cost and the depth.
     fn shape(&self) -> Option<(f64, usize)>;
 }
 
@@ -84,7 +84,7 @@ impl Shape for Bvh2 {
 }
 
 impl Shape for CwBvh {
-    /// Eight children to a node: its cost would not compare with a binary tree's.
+    /// Returns `None`: with eight children to a node, the cost would not compare.
     fn shape(&self) -> Option<(f64, usize)> {
         None
     }

@@ -50,7 +50,7 @@ fn rows(workload: &Workload, methods: &[Method], repetitions: usize) -> Vec<Vec<
     let builds: Vec<_> = methods.iter().map(|method| (method.prepare)(triangles)).collect();
     let built: Vec<_> = builds.iter().map(|build| build()).collect();
     let check = Check::new(workload, methods, &built);
-    // Down the first column, beside the methods.
+    // The facts of the scene go down the first column, beside the methods.
     let facts = [
         name.clone(),
         format!("{} triangles", triangles.len()),

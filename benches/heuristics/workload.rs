@@ -14,7 +14,7 @@ pub struct Workload {
 }
 
 impl Workload {
-    /// With `rays` rays of each kind.
+    /// Returns a workload with `rays` rays of each kind.
     pub fn new(scene: &NamedScene, rays: usize) -> Self {
         let Rays { primary, diffuse, shadow, random } = Rays::new(&scene.triangles, scene, rays);
         Self {

@@ -1,4 +1,4 @@
-//! The families that are measured, a family for each kind of primitive.
+//! The measured families, one for each kind of primitive.
 
 use crate::primitives::{discs, spheres};
 use crate::shared::obvhs::{Peer, Traversal, convert};
@@ -9,8 +9,11 @@ use bvhkit::{Bvh, CompactTree, Fast, Intersect, Precise, Traverse, Tree, Triangl
 use obvhs::BvhBuildParams;
 use std::rc::Rc;
 
-/// Every layout over the triangles that are quickest to test, where layouts count for most; the default layout over
-/// everything else. More would be long in compiling and tell little.
+/// Returns all families over a scene.
+///
+/// Every layout is measured over fast triangles. They are the quickest to test, so layouts
+/// count for most there. The other families have the default layout alone: more would take
+/// long to compile and tell little.
 pub fn all(scene: &NamedScene, rays: usize) -> Vec<Family> {
     let triangles = &scene.triangles;
     let kinds: Rc<[Kind]> = kinds::all(triangles, scene, rays).into();
@@ -61,7 +64,7 @@ where
     Member { name: layout.into(), ours: true, tracer: Box::new(bvh) }
 }
 
-/// By its middle preset.
+/// Builds a tree of `obvhs` with its medium preset.
 fn peer<B: Traversal + Sync + 'static>(
     layout: &'static str,
     triangles: &[Triangle],

@@ -1,4 +1,6 @@
-//! Criterion's groups: one for each kind of ray and scene, on one thread and in natural order.
+//! Criterion's groups, one for each kind of ray and scene.
+//!
+//! The rays are traced on one thread and in their natural order.
 
 use crate::shared::criterion::flat_group;
 use crate::tracing::family::Family;

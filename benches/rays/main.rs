@@ -1,11 +1,14 @@
-//! Traces rays of every kind, one by one and in batches, on one thread and on all, through every layout and over
-//! several primitives, and through `obvhs`; on procedural scenes and, if the environment variable `BVHKIT_SCENE` names
-//! a file, on that.
+//! Traces rays of every kind through every layout, and through `obvhs`.
 //!
-//! `cargo bench --bench rays` measures with criterion, then prints one table of everything side by side. No time is taken
-//! on a scene before the answers there were compared with the naive reference's. A filter, such as
-//! `-- shadow/interior`, applies to criterion alone: one that matches nothing leaves the table. `RAYON_NUM_THREADS` tells how
-//! many threads all are; of 1, columns are not repeated.
+//! Rays are traced one by one and in batches, on one thread and on all, over several kinds of
+//! primitives. The scenes are procedural ones and the file that the environment variable
+//! `BVHKIT_SCENE` names, if it is set.
+//!
+//! `cargo bench --bench rays` measures with criterion, then prints one table of everything side
+//! by side. No scene is timed before its answers are compared with those of the naive
+//! reference. A filter, such as `-- shadow/interior`, applies to criterion alone: one that
+//! matches nothing leaves the table. `RAYON_NUM_THREADS` is the number of threads where all are
+//! used; if it is 1, columns are not repeated.
 
 mod families;
 mod groups;
@@ -19,24 +22,28 @@ mod support;
 #[path = "../shared/tracing/mod.rs"]
 mod tracing;
 
-/// Seen from outside, from inside, and without a surface: what lies between tells little more of a layout.
+/// Scenes seen from outside, from inside, and without a surface.
+///
+/// Scenes between these tell little more about a layout.
 const SCENES: [&str; 3] = ["closed-mesh", "interior", "clustered-soup"];
 
-/// How much to do.
+/// The amount of work.
 struct Extent {
     /// Triangles of the procedural scenes.
     size: usize,
     /// Rays of each kind.
     rays: usize,
-    /// Tests of one primitive that the naive reference may spend on each family of a scene: a second or so.
+    /// Tests of one primitive that the naive reference may spend on a family and scene.
+    ///
+    /// They take about a second.
     naive_tests: usize,
-    /// How often the table's measurements are repeated.
+    /// Repetitions of the table's measurements.
     repetitions: usize,
 }
 
 const BENCH: Extent = Extent { size: 100_000, rays: 1 << 14, naive_tests: 100_000_000, repetitions: 5 };
 
-/// Just enough to see that everything runs; more rays than a chunk of a batch.
+/// Just enough to see that everything runs.
 const TEST: Extent = Extent { size: 300, rays: 1100, naive_tests: 2_000_000, repetitions: 1 };
 
 fn main() -> anyhow::Result<()> {

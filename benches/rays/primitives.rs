@@ -1,5 +1,6 @@
-//! Other primitives than triangles, to put in a scene's place: in the middle of each triangle one as large as its
-//! inscribed circle.
+//! Primitives other than triangles, to put in place of a scene's triangles.
+//!
+//! Each is in the middle of its triangle and as large as the inscribed circle.
 
 use crate::support::rays::Surface;
 use bvhkit::{Aabb, Intersect, OneByOne, Primitive, Ray, Sphere, Triangle};
@@ -9,12 +10,12 @@ pub fn spheres(triangles: &[Triangle]) -> Vec<Sphere> {
     circles(triangles).map(|(center, radius, _)| Sphere::new(center, radius)).collect()
 }
 
-/// Each faces as its triangle did.
+/// Returns discs with the normals of their triangles.
 pub fn discs(triangles: &[Triangle]) -> Vec<Disc> {
     circles(triangles).map(|(center, radius, normal)| Disc { center, radius, normal }).collect()
 }
 
-/// Centers, radii and normals; none of triangles without area.
+/// Returns centers, radii and normals, except for triangles without area.
 fn circles(triangles: &[Triangle]) -> impl Iterator<Item = (Vec3, f32, Vec3)> {
     triangles.iter().filter_map(|triangle| {
         let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(Vec3::from);
@@ -24,12 +25,12 @@ fn circles(triangles: &[Triangle]) -> impl Iterator<Item = (Vec3, f32, Vec3)> {
     })
 }
 
-/// A primitive without a leaf of its own.
+/// A disc, a primitive that is tested one by one.
 #[derive(Clone, Copy)]
 pub struct Disc {
     center: Vec3,
     radius: f32,
-    /// Of length 1.
+    /// The normal, of length 1.
     normal: Vec3,
 }
 

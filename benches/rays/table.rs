@@ -56,7 +56,7 @@ pub fn add(
     checks: &[Vec<Check>],
     repetitions: usize,
 ) {
-    // Down the first column, beside the rays.
+    // The facts of the scene go down the first column, beside the rays.
     let mut facts = [scene.name.clone(), format!("{} triangles", scene.triangles.len())].into_iter();
     for (number, kind) in families[0].kinds.iter().enumerate() {
         let columns: Vec<_> = passes().map(|pass| measure(families, number, pass, repetitions)).collect();

@@ -1,11 +1,11 @@
-//! Whether answers agree: with the naive reference's, and between hierarchies.
+//! Agreement of answers: with the naive reference, and between hierarchies.
 
 use bvhkit::{Intersect, Ray, reference};
 
-/// Which primitive, and where.
+/// A hit on a primitive, without its payload.
 pub type Hit = bvhkit::Hit<f32, ()>;
 
-/// The same hit without what its primitive tells of it.
+/// Returns the hit without its payload.
 pub fn bare<T>(hit: bvhkit::Hit<f32, T>) -> Hit {
     Hit { t: hit.t, index: hit.index, payload: () }
 }
@@ -26,10 +26,12 @@ impl Answers {
     }
 }
 
-/// How many rays were answered otherwise than expected; each counts once, by the gravest.
+/// The numbers of rays that are answered otherwise than expected.
+///
+/// Each ray counts once, by its gravest disagreement.
 #[derive(Clone, Copy, Default)]
 pub struct Disagreements {
-    /// One says hit, the other miss, in either query.
+    /// One answer is a hit, the other a miss, in either query.
     pub hit_or_miss: usize,
     /// Another primitive, with another t.
     pub primitive: usize,
@@ -40,7 +42,7 @@ pub struct Disagreements {
 }
 
 impl Disagreements {
-    /// Those that an image would show.
+    /// Returns the number of rays whose disagreement an image would show.
     pub fn visible(&self) -> usize {
         self.hit_or_miss + self.primitive
     }
@@ -63,7 +65,8 @@ impl Disagreements {
                     counts.rounding += usize::from(a.t.to_bits() != b.t.to_bits());
                 }
                 (Some(a), Some(b)) => {
-                    // Whose rounding differs cannot be asked for a tie: we judge by our own.
+                    // A peer cannot be asked for its own rounding of a tie,
+                    // so our test decides about ties.
                     let other = reference::closest_hit(&primitives[b.index..=b.index], ray);
                     let tie = other.is_some_and(|other| other.t == a.t);
                     *(if tie { &mut counts.tie } else { &mut counts.primitive }) += 1;
@@ -75,8 +78,11 @@ impl Disagreements {
     }
 }
 
+/// Asserts that each answer is, bit for bit, the expected one.
+///
 /// # Panics
-/// If an answer is not, bit for bit, the expected one. The message has all it takes to reproduce it.
+///
+/// If an answer differs. The message has all that is needed to reproduce it.
 pub fn assert_exact(what: &str, rays: &[Ray], expected: &Answers, actual: &Answers) {
     let bits = |hit: Option<Hit>| hit.map(|hit| (hit.t.to_bits(), hit.index));
     for (i, ray) in rays.iter().enumerate() {

@@ -2,7 +2,9 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, Row, Table, presets};
 
-/// An empty table, which Markdown reads too: words in the first columns, numbers in the others.
+/// Returns an empty table, which Markdown reads too.
+///
+/// The first `words` columns hold words, the others numbers.
 pub fn table(header: impl Into<Row>, words: usize) -> Table {
     let mut table = Table::new();
     table.load_style(presets::ASCII_MARKDOWN).set_content_arrangement(ContentArrangement::Disabled);
@@ -13,7 +15,7 @@ pub fn table(header: impl Into<Row>, words: usize) -> Table {
     table
 }
 
-/// A number with so many decimals, or a dash for what is not known.
+/// Formats a number with `decimals` decimals, or `None` as a dash.
 pub fn decimal(number: Option<f64>, decimals: usize) -> String {
     number.map_or("-".into(), |number| format!("{number:.decimals$}"))
 }

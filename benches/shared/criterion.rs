@@ -4,7 +4,9 @@ use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, SamplingMode, Throughput};
 use std::time::Duration;
 
-/// Brief, for there is much to measure; the command line may say otherwise.
+/// Returns a criterion with brief measurements, for there are many.
+///
+/// The command line may say otherwise.
 pub fn brief_criterion() -> Criterion {
     Criterion::default()
         .sample_size(10)
@@ -14,7 +16,9 @@ pub fn brief_criterion() -> Criterion {
         .configure_from_args()
 }
 
-/// A group whose iterations each take milliseconds: more of them in later samples would only cost time.
+/// Returns a group whose iterations each take milliseconds.
+///
+/// All samples have equally many iterations: more in later samples would only cost time.
 pub fn flat_group(criterion: &mut Criterion, name: String, elements: usize) -> BenchmarkGroup<'_, WallTime> {
     let mut group = criterion.benchmark_group(name);
     group.sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(elements as u64));

@@ -1,8 +1,10 @@
-//! How much a bench is to do.
+//! The choice between measuring and a test run.
 
-/// Whether to measure: by `cargo bench`. `cargo test` passes no `--bench`, and wants to see that everything runs.
+/// Returns whether to measure, as `cargo bench` asks for.
+///
+/// `cargo test` passes no `--bench`; then the bench only has to show that everything runs.
 pub fn is_bench() -> bool {
-    // Criterion's own rule.
+    // The same rule as in criterion.
     let argument = |wanted: &str| std::env::args().any(|argument| argument == wanted);
     argument("--bench") && !argument("--test")
 }

@@ -9,7 +9,7 @@ use std::path::Path;
 #[expect(dead_code, reason = "the path tracer needs more of a scene than its triangles")]
 mod scene;
 
-/// With the camera of the file, or one that sees everything.
+/// Loads a scene, with the camera of the file or one that sees everything.
 pub fn scene(path: &Path) -> Result<NamedScene> {
     let mut scene = scene::load(path)?;
     let bvh = Bvh::build(scene.shapes.iter().copied())?;

@@ -1,28 +1,30 @@
-//! Where labels of marks go, so that none covers another.
+//! Positions of the labels of marks, so that none covers another.
 
 use std::ops::Range;
 
-/// A pixel, from the top left.
+/// The position of a pixel, from the top left.
 type Pixel = (i32, i32);
 
 const HEIGHT: i32 = 18;
-/// Of a character, on average and a little more.
+/// The width of a character, on average and a little more.
 const WIDTH: i32 = 8;
-/// More than there are rows of labels.
+/// The number of positions to try, more than there are rows of labels.
 const TRIES: i32 = 100;
 
-/// What has been drawn: center, and half the extent.
+/// The boxes that are drawn already: the center and half the extent of each.
 #[derive(Default)]
 pub struct Labels(Vec<(Pixel, Pixel)>);
 
 impl Labels {
-    /// A mark, or an upright bar of them, that no label may cover.
+    /// Reserves the box of a mark, or of an upright bar, which no label may cover.
     pub fn bar(&mut self, from: Pixel, to: Pixel) {
         let center = ((from.0 + to.0) / 2, (from.1 + to.1) / 2);
         self.0.push((center, (8, 8 + (from.1 - to.1).abs() / 2)));
     }
 
-    /// The center of `text`: the place nearest above or below the mark that is free, and within `rows`.
+    /// Returns the center for a label, the nearest free one above or below its mark.
+    ///
+    /// The center is within `rows`. If none is free, it is that of the mark.
     pub fn place(&mut self, text: &str, mark: Pixel, rows: &Range<i32>) -> Pixel {
         let half = (text.chars().count() as i32 * WIDTH / 2, HEIGHT / 2);
         let away = |i: i32| (i + 1) / 2 * HEIGHT * if i % 2 == 1 { -1 } else { 1 };

@@ -1,4 +1,4 @@
-//! What the benches share that print times only of what was checked.
+//! Modules of the benches that print times only of checked answers.
 
 pub mod agreement;
 pub mod columns;

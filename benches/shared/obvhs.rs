@@ -1,5 +1,7 @@
-//! `obvhs`, called in the way that it recommends for speed: its presets, its triangle made for ray
-//! tests, and triangles permuted into the order of its leaves, so that hits need no look-up.
+//! `obvhs`, called in the way that it recommends for speed.
+//!
+//! That is with its presets, its triangle for ray tests, and triangles permuted into the order of
+//! the leaves, so that hits need no look-up.
 
 use bvhkit::{Hit, Ray};
 use glam::Vec3A;
@@ -14,7 +16,7 @@ use std::time::Duration;
 /// A tree and its triangles.
 pub struct Peer<B> {
     pub bvh: B,
-    /// In the order of its leaves.
+    /// The triangles in the order of the tree's leaves.
     pub triangles: Vec<RtTriangle>,
 }
 
@@ -55,7 +57,9 @@ impl<B: Traversal> Peer<B> {
         !self.bvh.misses(convert_ray(ray), |ray, slot| self.triangles[slot].intersect(ray))
     }
 
-    /// With a triangle test of the caller's, given the triangle's place in the list.
+    /// Returns the closest hit by the caller's triangle test.
+    ///
+    /// `test` is given the ray and the triangle's place in `triangles`.
     pub fn closest_hit_by(&self, ray: &Ray, test: impl Test) -> Option<Hit<f32, ()>> {
         let mut hit = RayHit::none();
         let index = |slot: u32| self.bvh.indices()[slot as usize] as usize;
@@ -67,12 +71,12 @@ impl<B: Traversal> Peer<B> {
     }
 }
 
-/// What its two kinds of tree have in common.
+/// The queries that both kinds of tree have.
 pub trait Traversal {
     fn closest(&self, ray: obvhs::ray::Ray, hit: &mut RayHit, test: impl Test) -> bool;
-    /// Whether nothing is hit.
+    /// Returns whether the ray hits nothing.
     fn misses(&self, ray: obvhs::ray::Ray, test: impl Test) -> bool;
-    /// The triangle's index by its place in the list.
+    /// Returns the input's index of each triangle, in the order of the leaves.
     fn indices(&self) -> &[u32];
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// The median duration of each candidate's `run`; see [`turns`].
+/// Returns the median duration of each candidate's `run`; see [`turns`].
 pub fn interleaved<T>(
     candidates: usize,
     repetitions: usize,
@@ -12,11 +12,12 @@ pub fn interleaved<T>(
     turns(candidates, repetitions, prepare, run).into_iter().map(median).collect()
 }
 
-/// The durations of each candidate's `run`, by its position, without dropping its result; what comes of `prepare` just
-/// before is not timed.
+/// Returns the durations of each candidate's `run`, by the candidate's position.
 ///
-/// Candidates take turns, in an order reversed each time (A B C, C B A, ...), so that a machine that
-/// slows down meanwhile slows all of them down alike.
+/// The call of `prepare` before each `run` and the drop of the result are not timed.
+///
+/// Candidates take turns, in an order that is reversed each time (A B C, C B A, ...). So a machine
+/// that slows down meanwhile slows all of them down alike.
 pub fn turns<T>(
     candidates: usize,
     repetitions: usize,
@@ -37,13 +38,13 @@ pub fn turns<T>(
     durations
 }
 
-/// Of an even number, the later of the two in the middle.
+/// Returns the median; for an even number, the later of the two in the middle.
 pub fn median(mut durations: Vec<Duration>) -> Duration {
     durations.sort_unstable();
     durations[durations.len() / 2]
 }
 
-/// Millions a second.
+/// Returns millions of rays per second.
 pub fn mega_rays(rays: usize, time: Duration) -> f64 {
     rays as f64 / time.as_secs_f64() / 1e6
 }

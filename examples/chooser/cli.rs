@@ -3,7 +3,7 @@
 use clap::Parser;
 use std::path::PathBuf;
 
-/// Measures every way to build: how long it takes, and how quick the rays are then.
+/// Measures every way to build a hierarchy: its build time and its speed of rays.
 #[derive(Parser)]
 #[command(name = "chooser", version)]
 pub struct Options {
@@ -11,7 +11,7 @@ pub struct Options {
     #[arg(value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
 
-    /// Where to write the picture
+    /// Path of the picture
     #[arg(long, value_name = "FILE", default_value = "target/chooser.svg")]
     pub svg: PathBuf,
 
@@ -20,7 +20,7 @@ pub struct Options {
     pub rays: usize,
 }
 
-/// More would be a mistake: their answers are kept.
+/// Maximum number of rays of each kind, whose answers are kept in memory.
 const MAX_RAYS: usize = 1 << 24;
 
 fn parse_rays(text: &str) -> Result<usize, String> {

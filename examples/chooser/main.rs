@@ -1,12 +1,13 @@
-//! Which way to build? Measures all of them on scenes of yours, prints a table, and draws how quick the build is against
-//! how quick the rays are.
+//! Measures all ways to build a hierarchy on scenes of yours.
+//!
+//! Prints a table, and draws the speed of the rays against the time of the build.
 //!
 //! ```sh
 //! cargo run --release --example chooser -- scene.glb
 //! ```
 //!
-//! On one thread; without a scene, on procedural ones. No time is taken on a scene before the answers there were compared
-//! with the naive reference's.
+//! Everything runs on one thread. Without a scene, procedural ones are measured. No scene is timed
+//! before its answers are compared with those of the naive reference.
 
 mod cli;
 mod pareto;
@@ -34,14 +35,14 @@ use clap::Parser;
 use support::scenes::NamedScene;
 use survey::Survey;
 
-/// Seen from outside, from inside, and without a surface.
+/// Procedural scenes: seen from outside, from inside, and without a surface.
 const PROCEDURAL: [&str; 3] = ["closed-mesh", "interior", "clustered-soup"];
-/// Triangles of each.
+/// Triangles of each procedural scene.
 const SIZE: usize = 100_000;
 
 fn main() -> Result<()> {
     let options = cli::Options::parse();
-    // Builds use the pool that they are called in, ours and obvhs's.
+    // Builds of this crate and of `obvhs` use the pool that they are called in.
     rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| run(&options))
 }
 

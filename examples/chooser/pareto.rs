@@ -1,6 +1,9 @@
-//! What nothing else is better than in both respects.
+//! The Pareto front: the points that no other beats in both respects.
 
-/// The places of the points that no other one beats, from left to right: none with as little x has more y.
+/// Returns the indices of the points on the Pareto front, from left to right.
+///
+/// A point is on the front if no other with at most its x has at least its y. Of
+/// equal points, one is on the front.
 pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| points[a].0.total_cmp(&points[b].0).then(points[b].1.total_cmp(&points[a].1)));

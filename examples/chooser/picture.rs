@@ -1,4 +1,4 @@
-//! The trade at a glance: how long a build takes against how quick the rays are then.
+//! A plot of the speed of the rays against the time of the build.
 
 use crate::pareto;
 use crate::shared::labels::Labels;
@@ -10,7 +10,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::path::Path;
 
-/// Of a scene's panel, below the heading.
+/// The size of a scene's panel, below the heading.
 const PANEL: (u32, u32) = (900, 520);
 const HEADING: u32 = 52;
 const OURS: RGBColor = RGBColor(20, 90, 200);
@@ -56,7 +56,8 @@ fn draw_panel(root: &Root<'_>, panel: &Root<'_>, survey: &Survey) -> Result<()> 
         .x_label_area_size(44)
         .y_label_area_size(56)
         .build_cartesian_2d((0.7 * least..1.5 * most).log_scale(), 0.0..1.12 * fastest)?;
-    // Its own labels stand at 100, 200, ..., 1000, and none below.
+    // The labels are drawn below: the chart itself has them at 100, 200,
+    // ..., 1000, and none under 100.
     chart
         .configure_mesh()
         .disable_x_mesh()
@@ -89,7 +90,8 @@ fn draw_panel(root: &Root<'_>, panel: &Root<'_>, survey: &Survey) -> Result<()> 
         labels.bar(mark, mark);
         draw_mark(root, finding.sort, mark)?;
     }
-    // Presets first, which so are nearest to theirs. The reinserted have none: a line leads to the heuristic's.
+    // Presets come first, so that their labels are nearest to their marks. Reinserted ways have no
+    // labels: a line leads to the mark of their heuristic.
     let mut named: Vec<_> = survey.findings.iter().zip(&points).collect();
     named.retain(|(finding, _)| finding.sort != Sort::Reinserted);
     named.sort_by_key(|(finding, _)| finding.sort != Sort::Preset);
@@ -102,7 +104,7 @@ fn draw_panel(root: &Root<'_>, panel: &Root<'_>, survey: &Survey) -> Result<()> 
     Ok(())
 }
 
-/// 1, 2 and 5 times the powers of ten.
+/// Returns 1, 2 and 5 times the powers of ten, within `from..to`.
 fn ticks(from: f64, to: f64) -> impl Iterator<Item = f64> {
     let powers = (from.log10().floor() as i32)..=(to.log10().floor() as i32);
     let ticks = powers.flat_map(|power| [1.0, 2.0, 5.0].map(|tick| tick * 10f64.powi(power)));

@@ -1,4 +1,4 @@
-//! A scene, built in every way, and the same rays through all that was built.
+//! A survey: one scene built in every way, and the same rays through each tree.
 
 use crate::shared::timing::turns;
 use crate::support::scenes::NamedScene;
@@ -11,48 +11,54 @@ use crate::ways::{self, Sort};
 use bvhkit::Counters;
 use std::slice;
 
-/// What a renderer traces: closest hit or any hit, as each kind asks.
+/// The kinds of rays that a renderer traces, each by closest hit or any hit.
 pub const KINDS: [&str; 5] = ["primary", "diffuse", "random", "shadow", "ambient-occlusion"];
 
-/// Tests of one triangle that the naive reference may spend on a scene: a few seconds.
+/// Tests of one triangle that the naive reference may spend on a scene.
+///
+/// They take a few seconds.
 const NAIVE_TESTS: usize = 300_000_000;
-/// How often builds are repeated, and how often rays are.
+/// Repetitions of each build.
 const BUILDS: usize = 7;
+/// Repetitions of the rays.
 const TRACES: usize = 15;
-/// One by one in a renderer's order.
+/// Rays are traced one by one, in a renderer's order.
 const PASS: Pass = Pass { is_shuffled: false, way: Way::Single, threads: 1 };
 
 pub struct Survey {
     pub scene: String,
     pub triangles: usize,
-    /// Rays that the naive reference answered too.
+    /// The number of rays that the naive reference answers too.
     pub sample: usize,
-    /// For each kind that there are rays of: its name, how many, and the share that hits.
+    /// For each kind with rays: its name, their number, and the share that hits.
     pub kinds: Vec<(&'static str, usize, f64)>,
     pub findings: Vec<Finding>,
 }
 
-/// What came of a way to build.
+/// The measurements of one way to build.
 pub struct Finding {
     pub name: String,
     pub sort: Sort,
     pub build_ms: f64,
     pub sah_cost: Option<f64>,
     pub epo: Option<f64>,
-    /// Bytes for each triangle, of the hierarchy and of the triangles.
+    /// Bytes for each triangle, of the hierarchy and the triangles together.
     pub bytes: Option<f64>,
     /// Nodes, leaves and tests for each ray, over all kinds.
     pub steps: Option<[f64; 3]>,
     /// Millions of rays a second, for each kind in turn.
     pub rates: Vec<f64>,
-    /// Of the rates.
+    /// The geometric mean of the rates.
     pub geometric_mean: f64,
-    /// On how many rays of the sample it differs visibly from the naive reference.
+    /// The number of rays in the sample that visibly differ from the naive reference.
     pub differ: usize,
 }
 
 impl Survey {
+    /// Builds a scene in every way, checks all answers and measures.
+    ///
     /// # Panics
+    ///
     /// If any of our answers is not, bit for bit, the naive reference's.
     pub fn new(scene: &NamedScene, rays: usize) -> Self {
         let ways = ways::all(&scene.triangles);
@@ -71,7 +77,8 @@ impl Survey {
         };
         let checks = check(&scene.name, &family, NAIVE_TESTS);
 
-        // The quickest: a build is so long that the median would tell what else the machine had to do.
+        // The shortest time counts: builds are so long that a median would
+        // include the machine's other work.
         let build_times = turns(ways.len(), BUILDS, |_| (), |i| (ways[i].build)());
         let fastest = |i: usize| build_times[i].iter().min().expect("a build was timed").as_secs_f64();
         let rates: Vec<_> = (0..family.kinds.len())
@@ -104,7 +111,9 @@ impl Survey {
     }
 }
 
-/// In the order of [`KINDS`]; a camera that sees nothing has no rays but primary and random ones.
+/// Returns the rays of each kind, in the order of [`KINDS`].
+///
+/// If the camera sees nothing, there are only primary and random rays.
 fn kinds(scene: &NamedScene, rays: usize) -> Vec<Kind> {
     let place = |kind: &Kind| KINDS.iter().position(|&name| name == kind.name);
     let mut kinds = kinds::all(&scene.triangles, scene, rays);

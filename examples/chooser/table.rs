@@ -1,4 +1,4 @@
-//! Every way side by side.
+//! A table of all ways, side by side.
 
 use crate::shared::columns::{decimal, table};
 use crate::survey::{Finding, KINDS, Survey};
@@ -15,7 +15,7 @@ const HEADER: [&str; 10] = [
     "tests\nper ray",
     "differ\nfrom naive",
 ];
-/// Where the kinds of rays stand, and their mean.
+/// The first column of the rates: a column for each kind of ray, then their mean.
 const RATES: usize = 9;
 
 const LEGEND: &str = "\
@@ -40,7 +40,7 @@ pub fn print(surveys: &[Survey]) {
 }
 
 fn rows(survey: &Survey) -> impl Iterator<Item = Vec<String>> + '_ {
-    // Down the first column, beside the ways.
+    // The facts of the scene go down the first column, beside the ways.
     let mut facts = vec![survey.scene.clone(), format!("{} triangles", survey.triangles)];
     facts.extend(
         survey.kinds.iter().map(|(kind, rays, hit)| format!("{rays} {kind}, {:.0} % hit", 100.0 * hit)),

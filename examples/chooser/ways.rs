@@ -10,27 +10,29 @@ use std::rc::Rc;
 pub struct Way<'a> {
     pub name: String,
     pub sort: Sort,
-    /// From triangles in its own format to what is ready to trace.
+    /// Builds from triangles in the way's own format to a tree that is ready to trace.
     pub build: Box<dyn Fn() -> Box<dyn Built> + 'a>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Sort {
-    /// A heuristic, and the tree as it splits.
+    /// A heuristic, with the tree as it splits.
     Split,
-    /// The same with reinsertion; comes right after it.
+    /// The same heuristic with reinsertion; comes right after it.
     Reinserted,
     Preset,
-    /// Of another library.
+    /// A preset of another library.
     Peer,
 }
 
-/// What a way has built.
+/// A hierarchy that a way has built.
 pub trait Built: Tracer {
-    /// As [`bvhkit::TreeReport`] defines it; none if nodes have another number of children, so that it would not compare.
+    /// Returns the SAH cost, as [`bvhkit::TreeReport`] defines it.
+    ///
+    /// `None` if nodes have another number of children, so that the costs would not compare.
     fn sah_cost(&self) -> Option<f64>;
 
-    /// As [`Bvh::epo`] defines it; none likewise.
+    /// Returns the EPO, as [`Bvh::epo`] defines it; `None` in the same case.
     fn epo(&self) -> Option<f64>;
 }
 
@@ -54,7 +56,7 @@ pub fn all(triangles: &[Triangle]) -> Vec<Way<'_>> {
     ways
 }
 
-/// As the heuristic splits, and with reinsertion.
+/// Returns two ways of a heuristic: as it splits, and with reinsertion.
 fn both<'a>(
     triangles: &'a [Triangle],
     name: &str,
@@ -89,7 +91,7 @@ impl Built for Bvh<Triangle> {
     }
 }
 
-/// `obvhs` by its presets.
+/// Returns the ways of `obvhs`, one for each of its trees and presets.
 fn peers<'a>(triangles: &[Triangle]) -> Vec<Way<'a>> {
     let triangles: Rc<[_]> = convert(triangles).into();
     let presets = [

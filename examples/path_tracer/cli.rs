@@ -9,7 +9,7 @@ use glam::UVec2;
 
 use crate::tracer::Method;
 
-/// A picture of more pixels is taken for a mistake.
+/// Maximum number of pixels; a picture of more is taken for a mistake.
 const MAX_PIXELS: u64 = 1 << 26;
 
 /// Renders a scene by path tracing, with or without a bounding volume hierarchy.
@@ -19,11 +19,12 @@ pub struct Options {
     /// A COLLADA (.dae), OBJ or glTF (.glb, .gltf) file; without it, a Cornell box is rendered
     pub scene: Option<PathBuf>,
 
-    /// How the tree is built; none tests every primitive
+    /// The heuristic that builds the tree; none tests every primitive
     #[arg(long, value_enum, default_value_t = Method::BinnedSah)]
     pub heuristic: Method,
 
-    /// The most primitives in a leaf of the binary tree: those of the wide one hold up to 8 [default: the library's]
+    /// The most primitives in a leaf of the binary tree; leaves of the wide tree hold up
+    /// to 8 [default: the library's]
     #[arg(long, value_name = "N")]
     pub max_leaf_size: Option<NonZeroUsize>,
 
@@ -31,11 +32,12 @@ pub struct Options {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
 
-    /// Samples per pixel [default: 1 to compare or for a heatmap, 4 for normals, else 32; 96 for the box]
+    /// Samples per pixel [default: 1 to compare or for a heatmap, 4 for
+    /// normals, else 32; 96 for the box]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub spp: Option<u32>,
 
-    /// How often a path may bounce; 0 is direct light alone
+    /// Maximum number of bounces of a path; 0 is direct light alone
     #[arg(long, value_name = "N", default_value_t = 8)]
     pub bounces: u32,
 
@@ -43,11 +45,11 @@ pub struct Options {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<UVec2>,
 
-    /// Where to write the PNG [default: the scene's name in the current directory]
+    /// Path of the PNG [default: the scene's name in the current directory]
     #[arg(long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// What to show
+    /// Contents of the picture
     #[arg(long, value_enum, default_value_t = View::Path)]
     pub view: View,
 
@@ -56,7 +58,7 @@ pub struct Options {
     pub compare: bool,
 }
 
-/// What the picture shows.
+/// The contents of the picture.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum View {
     /// Light
@@ -68,14 +70,19 @@ pub enum View {
 }
 
 impl Options {
-    /// The program's arguments. If they ask for help, it is printed and the program ends; what is
-    /// wrong with them comes as one line.
+    /// Parses the program's arguments.
+    ///
+    /// If they ask for help, prints it and ends the program.
+    ///
+    /// # Errors
+    ///
+    /// If the arguments are wrong; the message is one line.
     pub fn from_arguments() -> anyhow::Result<Self> {
         Self::try_parse().map_err(|error| {
             if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
                 error.exit();
             }
-            // The rest, after a blank line, is advice on usage.
+            // The first paragraph is the error. The rest is advice on usage.
             let text = error.to_string();
             let first = text.split("\n\n").next().unwrap_or_default();
             let line: Vec<&str> = first.split_whitespace().collect();

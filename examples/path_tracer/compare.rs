@@ -1,4 +1,4 @@
-//! The same rays through the naive loop and through the tree of every heuristic, as one table.
+//! A table of the same rays through the naive loop and the tree of each heuristic.
 
 use std::time::{Duration, Instant};
 
@@ -10,25 +10,27 @@ use comfy_table::{CellAlignment, Table, presets};
 use crate::scene::Shape;
 use crate::tracer::{Method, Query, Tracer};
 
-/// Ten to twenty seconds of the naive loop.
+/// Maximum number of tests, which take the naive loop ten to twenty seconds.
 const MAX_NAIVE_TESTS: u64 = 2_500_000_000;
-/// Keeps the memory for rays and answers small.
+/// Maximum number of rays, which keeps the memory for rays and answers small.
 const MAX_RAYS: u64 = 2_000_000;
 
-/// How many rays to compare on.
+/// Returns the number of rays to compare.
 pub fn ray_budget(primitives: usize) -> u64 {
     (MAX_NAIVE_TESTS / primitives.max(1) as u64).clamp(1, MAX_RAYS)
 }
 
-/// What a method answers to a query: of a hit, the bits of t and the index of the primitive.
+/// A method's answer to a query; a hit has the bits of t and the primitive's index.
 #[derive(Clone, Copy, PartialEq)]
 enum Answer {
     Closest(Option<(u32, usize)>),
     Any(bool),
 }
 
-/// Runs the rays, on one thread, through every method. The first method, the naive loop, is what
-/// the others are measured against, in speed and in their answers.
+/// Runs the rays through every method, on one thread.
+///
+/// The first method is the naive loop. The speed and the answers of the
+/// others are compared with its own.
 pub fn table(
     shapes: &[Shape],
     rays: &[Query],

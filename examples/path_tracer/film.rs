@@ -1,4 +1,6 @@
-//! The picture as radiances, and its way to a PNG file: exposure, tone mapping, encoding.
+//! The picture as radiances, and its way to a PNG file.
+//!
+//! The steps are exposure, tone mapping and encoding.
 
 use std::fs;
 use std::io::Cursor;
@@ -8,7 +10,7 @@ use anyhow::{Context, Result};
 use glam::{UVec2, Vec3};
 use image::{ImageFormat, Rgb, RgbImage};
 
-/// A picture of linear colours; what they stand for is the renderer's affair.
+/// A picture of linear colours, whose meaning is up to the renderer.
 pub struct Film {
     pub size: UVec2,
     pub pixels: Vec<Vec3>,
@@ -23,13 +25,13 @@ impl Film {
         self.pixels[at.y as usize * self.size.x as usize + at.x as usize] = color;
     }
 
-    /// The picture of radiances as seen by an eye: exposed, tone mapped, in sRGB.
+    /// Returns the picture of radiances, exposed, tone mapped and in sRGB.
     pub fn tone_mapped(&self) -> RgbImage {
         let exposure = self.exposure();
         self.to_image(|color| srgb(tone_map(exposure * color)))
     }
 
-    /// The picture with each pixel turned into a colour from 0 to 1.
+    /// Returns the picture with each pixel turned into a colour from 0 to 1.
     pub fn to_image(&self, color: impl Fn(Vec3) -> Vec3) -> RgbImage {
         RgbImage::from_fn(self.size.x, self.size.y, |x, y| {
             let value = self.pixels[y as usize * self.size.x as usize + x as usize];
@@ -38,8 +40,10 @@ impl Film {
         })
     }
 
-    /// The factor that brings the bright parts of the picture, short of the lights themselves, just
-    /// below white: files give light in any unit. Black is left out, since it may be no surface.
+    /// Returns the factor that brings the bright parts of the picture just below white.
+    ///
+    /// The lights themselves may be brighter. The factor is needed because files give light in any
+    /// unit. Black pixels are left out, since they may show no surface.
     fn exposure(&self) -> f32 {
         let mut lit: Vec<f32> = self.pixels.iter().map(|&color| luminance(color)).collect();
         lit.retain(|&luminance| luminance > 0.0 && luminance.is_finite());
@@ -57,26 +61,28 @@ pub fn save(image: &RgbImage, path: &Path) -> Result<()> {
     let write = || -> Result<()> {
         let mut png = Cursor::new(Vec::new());
         image.write_to(&mut png, ImageFormat::Png)?;
-        // In one go: an encoder's own buffer drops the error of its last write.
+        // One call writes the whole file: an encoder's own buffer
+        // drops the error of its last write.
         Ok(fs::write(path, png.into_inner())?)
     };
     write().with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Compresses luminance so that `WHITE` becomes 1: Reinhard et al., "Photographic Tone Reproduction
-/// for Digital Images", SIGGRAPH 2002, equation 4.
+/// Compresses luminance so that `WHITE` becomes 1.
+///
+/// Reinhard et al., "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002, equation 4.
 fn tone_map(color: Vec3) -> Vec3 {
     const WHITE: f32 = 4.0;
     let luminance = luminance(color);
     color * ((1.0 + luminance / (WHITE * WHITE)) / (1.0 + luminance))
 }
 
-/// Relative luminance of linear sRGB (ITU-R BT.709).
+/// Returns the relative luminance of linear sRGB (ITU-R BT.709).
 fn luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// The transfer function of sRGB (IEC 61966-2-1).
+/// Applies the transfer function of sRGB (IEC 61966-2-1).
 fn srgb(color: Vec3) -> Vec3 {
     color.map(|x| if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 })
 }
@@ -104,7 +110,7 @@ mod tests {
             film.tone_mapped()
         };
         assert_eq!(ramp(1.0), ramp(1024.0));
-        // A picture without any light stays black.
+        // A picture without light stays black.
         assert!(ramp(0.0).iter().all(|&byte| byte == 0));
     }
 }

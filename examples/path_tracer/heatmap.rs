@@ -29,16 +29,18 @@ const DIGITS: [[u8; 5]; 10] = [
     [0b111, 0b101, 0b111, 0b001, 0b111],
 ];
 
-/// A picture of the work per pixel (each pixel's x), and the work that the brightest colour means.
-/// Room for a legend is added below the picture.
+/// Returns a picture of the work per pixel, and the work of its brightest colour.
+///
+/// The work is the x of each pixel. A legend is added below the picture.
 pub fn image(film: &Film) -> (RgbImage, u32) {
     let scale = scale(film);
     let picture = film.to_image(|work| ramp(work.x / scale as f32));
     (with_legend(&picture, scale), scale)
 }
 
-/// A round number above the work of all but a few pixels: a handful of outliers would leave the
-/// rest dark.
+/// Returns a round number above the work of all but a few pixels.
+///
+/// With a scale up to the largest work, a handful of outliers would leave the rest dark.
 fn scale(film: &Film) -> u32 {
     let mut work: Vec<f32> = film.pixels.iter().map(|pixel| pixel.x).collect();
     let rank = work.len() * 995 / 1000;
@@ -46,7 +48,7 @@ fn scale(film: &Film) -> u32 {
     round_up(most)
 }
 
-/// The next of 4, 8, 12, 20, 40, 80, 120, 200, ...: numbers whose quarters are whole.
+/// Returns the next of 4, 8, 12, 20, 40, 80, 120, 200, ...; quarters are whole.
 fn round_up(work: f32) -> u32 {
     let mut decade = 1;
     loop {
@@ -65,10 +67,10 @@ fn ramp(t: f32) -> Vec3 {
     RAMP[below].lerp(RAMP[below + 1], position - below as f32)
 }
 
-/// Puts a bar of the colours below the picture, and the numbers at its quarters below the bar.
+/// Adds a bar of the colours below the picture, with numbers at its quarters.
 fn with_legend(picture: &RgbImage, scale: u32) -> RgbImage {
     let (width, height) = picture.dimensions();
-    // Of the size of a digit's pixel: about a 160th of the width, so that five numbers fit.
+    // The size of a digit's pixel: about a 160th of the width, so that five numbers fit.
     let unit = (width / 160).max(1);
     let mut image = RgbImage::from_pixel(width, height + 17 * unit, Rgb([20, 20, 20]));
     image::imageops::replace(&mut image, picture, 0, 0);

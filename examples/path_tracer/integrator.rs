@@ -1,7 +1,7 @@
-//! Path tracing: what radiance arrives along a ray.
+//! Path tracing: the radiance that arrives along a ray.
 //!
-//! Unidirectional, with direct light sampled at every diffuse vertex (Kajiya, "The Rendering
-//! Equation", SIGGRAPH 1986). The sky is the exception: it is found by the paths that escape.
+//! Paths are unidirectional, with direct light sampled at every diffuse vertex (Kajiya, "The
+//! Rendering Equation", SIGGRAPH 1986). The sky is the exception: paths that escape find it.
 
 use std::f32::consts::FRAC_1_PI;
 
@@ -15,7 +15,7 @@ use crate::sampling;
 use crate::scene::{Material, Scene, Shape};
 use crate::tracer::{Caster, Hit};
 
-/// After this many bounces Russian roulette decides whether a path goes on.
+/// Number of bounces after which Russian roulette decides whether a path goes on.
 const ROULETTE_START: u32 = 3;
 
 pub struct Integrator<'a> {
@@ -29,12 +29,12 @@ impl<'a> Integrator<'a> {
         Self { scene, lights: Lights::new(scene), max_bounces }
     }
 
-    /// The radiance that arrives at the origin of `ray`: an estimate by one path.
+    /// Estimates the radiance that arrives at the origin of `ray`, by one path.
     pub fn radiance(&self, ray: &Ray, caster: &mut Caster<'_>, rng: &mut Pcg32) -> Vec3 {
         let mut ray = *ray;
         let mut radiance = Vec3::ZERO;
         let mut throughput = Vec3::ONE;
-        // Whether the light that the ray may meet was out of reach for the direct sampling.
+        // Whether the direct sampling could not reach the light that the ray may meet.
         let mut sees_emitters = true;
 
         for bounce in 0.. {
@@ -71,7 +71,8 @@ impl<'a> Integrator<'a> {
                     direction
                 }
             };
-            // A shading normal can send a ray to the wrong side of the surface: it is lost there.
+            // A shading normal can send a ray to the wrong side of the
+            // surface. The path ends there.
             let crosses = direction.dot(vertex.geometric) < 0.0;
             let transmits = matches!(self.scene.material(hit.index), Material::Glass { .. });
             if bounce == self.max_bounces || (crosses && !transmits) {
@@ -89,8 +90,7 @@ impl<'a> Integrator<'a> {
         radiance
     }
 
-    /// The light that reaches a diffuse vertex straight from the lights, as reflected by a white
-    /// surface.
+    /// Returns the direct light at a diffuse vertex, as reflected by a white surface.
     fn direct(&self, vertex: &Vertex, caster: &mut Caster<'_>, rng: &mut Pcg32) -> Vec3 {
         let start = SurfacePoint { position: vertex.smooth_point.into(), ..vertex.surface };
         let start = Vec3::from(start.spawn(vertex.geometric).origin);
@@ -104,7 +104,7 @@ impl<'a> Integrator<'a> {
         FRAC_1_PI * irradiance
     }
 
-    /// What the camera ray's first surface looks like as a colour: its shading normal.
+    /// Returns the shading normal of the camera ray's first surface, as a colour.
     pub fn normal_color(&self, ray: &Ray, caster: &mut Caster<'_>) -> Vec3 {
         let hit = caster.closest_hit(ray);
         hit.map_or(Vec3::ZERO, |hit| 0.5 * self.vertex(ray, &hit).shading + 0.5)
@@ -125,24 +125,28 @@ impl<'a> Integrator<'a> {
     }
 }
 
-/// Where a path meets a surface.
+/// A point of a path on a surface.
 struct Vertex {
     surface: SurfacePoint,
-    /// Where shadow rays start.
+    /// The point where shadow rays start.
     smooth_point: Vec3,
-    /// The geometric and the shading normal, on the side that the ray came from.
+    /// The geometric normal, on the side that the ray came from.
     geometric: Vec3,
+    /// The shading normal, on the same side.
     shading: Vec3,
-    /// Whether the ray came to the front; for a glass body: from outside.
+    /// Whether the ray came to the front; for a glass body, from outside.
     front: bool,
 }
 
 impl Vertex {
-    /// The vertex on a triangle that stands for a curved surface with these normals at its corners.
+    /// Returns the vertex on a triangle that stands for a curved surface.
     ///
-    /// Shadow rays start from the curved surface: from the triangle, some of those that the shading
-    /// normal calls lit would be blocked by neighbouring triangles, and the edge of the shadow would
-    /// show them (Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, chapter 4).
+    /// The surface has these normals at the triangle's corners.
+    ///
+    /// Shadow rays start from the curved surface. From the triangle, neighbouring triangles
+    /// would block some of the rays that the shading normal calls lit. The edge of the
+    /// shadow would show the triangles (Hanika, "Hacking the Shadow Terminator", Ray
+    /// Tracing Gems II, 2021, chapter 4).
     fn smoothed(self, triangle: &Triangle, normals: [Vec3; 3], at: Barycentrics) -> Self {
         let weights = [1.0 - at.u - at.v, at.u, at.v];
         let corners = [triangle.a, triangle.b, triangle.c].map(Vec3::from);
@@ -161,9 +165,11 @@ impl Vertex {
     }
 }
 
-/// Reflects or refracts at a smooth dielectric, each as often as Fresnel's equations give it light.
-/// `eta` is the ratio of the refractive indices, from the incoming ray's side to the other. Also
-/// tells whether the direction was refracted.
+/// Reflects or refracts a ray at a smooth dielectric.
+///
+/// Each happens as often as Fresnel's equations give it light. `eta` is the ratio of the
+/// refractive indices, from the incoming ray's side to the other. The second result tells
+/// whether the ray was refracted.
 fn scatter_glass(incoming: Vec3, normal: Vec3, eta: f32, rng: &mut Pcg32) -> (Vec3, bool) {
     let cos_in = (-incoming.dot(normal)).clamp(0.0, 1.0);
     let sin2_out = eta * eta * (1.0 - cos_in * cos_in);

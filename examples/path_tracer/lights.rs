@@ -1,4 +1,4 @@
-//! Direct light: picks points of the scene's lights for shadow rays to try.
+//! Direct light: samples points of the scene's lights for shadow rays.
 
 use std::f32::consts::TAU;
 
@@ -10,19 +10,22 @@ use rand_pcg::Pcg32;
 use crate::sampling;
 use crate::scene::{Light, Material, Scene};
 
-/// Shadow rays end this share of the way short, so that they do not hit the light itself.
+/// The share of the way that shadow rays go, so that they do not hit the light.
 const SHADOW_LENGTH: f32 = 0.9999;
 
-/// The lights of a scene: those without shape one by one, and all emitting shapes as one.
+/// The lights of a scene.
+///
+/// Lights without shape are sampled one by one, and all emitting shapes as one light.
 pub struct Lights<'a> {
     scene: &'a Scene,
     emitters: Vec<usize>,
-    /// The emitters' power up to and including each; the last is the total.
+    /// The sum of the emitters' power up to and including each; the last is the total.
     cumulative_power: Vec<f32>,
 }
 
-/// Light that reaches a point if the shadow ray is clear: it does so `irradiance` times the cosine
-/// at the receiver strong.
+/// Light that reaches a point if the shadow ray is clear.
+///
+/// Its strength is `irradiance` times the cosine at the receiver.
 pub struct LightSample {
     pub shadow_ray: Ray,
     pub direction: Vec3,
@@ -47,14 +50,14 @@ impl<'a> Lights<'a> {
         Self { scene, emitters, cumulative_power }
     }
 
-    /// One sample of each light without shape, and one of the emitting shapes together.
+    /// Returns a sample of each light without shape, and one of all emitting shapes.
     pub fn samples(&self, point: Vec3, rng: &mut Pcg32) -> impl Iterator<Item = LightSample> {
         let emitter = self.sample_emitters(point, rng);
         let lights = self.scene.lights.iter();
         emitter.into_iter().chain(lights.filter_map(move |light| sample(light, point, rng)))
     }
 
-    /// A point of an emitting shape, chosen in proportion to power.
+    /// Samples a point of an emitting shape, which is chosen in proportion to power.
     fn sample_emitters(&self, point: Vec3, rng: &mut Pcg32) -> Option<LightSample> {
         let total = *self.cumulative_power.last()?;
         let chosen = rng.random::<f32>() * total;
@@ -91,12 +94,12 @@ fn sample(light: &Light, point: Vec3, rng: &mut Pcg32) -> Option<LightSample> {
     }
 }
 
-/// The sample of an emitting area at `target`, which is chosen uniformly.
+/// Returns the sample of an emitting area at `target`, which is chosen uniformly.
 fn from_area(point: Vec3, target: Vec3, normal: Vec3, radiance: Vec3, area: f32) -> Option<LightSample> {
     let way = target - point;
     let direction = way.try_normalize()?;
-    // No light covers more than a hemisphere. Near to one a sample would say so now and then: those
-    // are the white specks in pictures without this bound.
+    // No light covers more than a hemisphere, but a sample close to the light may give more.
+    // Without this bound, such samples are white specks in the picture.
     let solid_angle = (-direction.dot(normal) * area / way.length_squared()).min(TAU);
     (solid_angle > 0.0).then(|| LightSample {
         shadow_ray: Ray::new(point, way).with_interval(0.0, SHADOW_LENGTH),

@@ -1,5 +1,6 @@
-//! The program's lines on standard output. A closed pipe is not an error: the picture is what
-//! matters.
+//! The program's lines on standard output.
+//!
+//! A closed pipe is not an error: the picture is the program's real output.
 
 use std::fmt::Display;
 use std::io::Write;
@@ -15,8 +16,10 @@ pub fn plain(text: impl Display) {
     let _ = writeln!(std::io::stdout(), "{text}");
 }
 
-/// Runs a step of the program between the two halves of a line: what it is, and how it ended.
-/// `done` words a success from the time that the step took.
+/// Runs a step of the program between the two halves of a printed line.
+///
+/// The first half is `text`, the second tells how the step ended. After a success, `done` makes it
+/// from the time that the step took.
 pub fn step<T, E>(
     text: impl Display,
     done: impl Fn(Duration) -> String,
@@ -31,7 +34,7 @@ pub fn step<T, E>(
     result
 }
 
-/// The usual end of a step.
+/// Returns the usual end of a step's line.
 pub fn done(time: Duration) -> String {
     format!("Done! ({:.4} sec)", time.as_secs_f64())
 }

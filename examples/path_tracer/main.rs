@@ -1,5 +1,6 @@
-//! A minimal path tracer on top of `bvhkit`: loads a scene, builds a tree, renders, saves a PNG.
+//! A minimal path tracer on top of `bvhkit`.
 //!
+//! It loads a scene, builds a tree, renders, and saves a PNG.
 //! `cargo run --release --example path_tracer` renders a Cornell box that needs no file;
 //! `-- --help` lists the options.
 
@@ -33,14 +34,14 @@ use render::{Rendered, Shot, render};
 use scene::{Camera, Scene};
 use tracer::Tracer;
 
-/// Height of the picture where the command line does not say.
+/// The height of the picture, unless the command line gives a size.
 const HEIGHT: u32 = 480;
 
 fn main() -> ExitCode {
     match Options::from_arguments().and_then(|options| run(&options)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // One line, even where a loader's message has several.
+            // The error is one line, even if a loader's message has several.
             let text = format!("{error:#}");
             let words: Vec<&str> = text.split_whitespace().collect();
             eprintln!("[PathTracer] Error: {}", words.join(" "));
@@ -89,8 +90,10 @@ fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// Loads the scene. The loaders may panic on malformed files: that becomes an error as any other,
-/// told in one line.
+/// Loads the scene.
+///
+/// The loaders may panic on malformed files. Such a panic becomes an
+/// error like any other, in one line.
 fn load(path: &Path) -> Result<Scene> {
     let hook = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| {}));
@@ -143,8 +146,10 @@ fn render_view(
     })
 }
 
-/// The rays of the picture; evenly spaced ones if there are too many for the naive loop. A first
-/// picture of one sample per pixel tells how many to expect.
+/// Returns the rays of the picture, or evenly spaced ones if there are too many.
+///
+/// The naive loop limits their number. A first picture of one sample per pixel
+/// tells how many rays to expect.
 fn collect_rays(options: &Options, scene: &Scene, tracer: &Tracer, shot: &Shot) -> Vec<tracer::Query> {
     let hidden = ProgressBar::hidden();
     let first = Shot { samples: 1, ..*shot };
@@ -192,7 +197,7 @@ fn default_output(options: &Options) -> PathBuf {
     Path::new(stem.unwrap_or("cornell".as_ref())).with_extension("png")
 }
 
-/// Fails now rather than after the rendering.
+/// Checks that the output can be written, so that a failure comes before rendering.
 fn ensure_writable(output: &Path, scene: Option<&Path>) -> Result<()> {
     let same =
         |scene: &Path| matches!((output.canonicalize(), scene.canonicalize()), (Ok(a), Ok(b)) if a == b);

@@ -1,4 +1,4 @@
-//! The picture, tile by tile on all threads.
+//! Rendering of the picture, tile by tile on all threads.
 
 use bvhkit::{Counters, Ray};
 use glam::{UVec2, Vec2, Vec3};
@@ -11,10 +11,10 @@ use crate::sampling;
 use crate::scene::Camera;
 use crate::tracer::{Caster, Query, Tracer};
 
-/// Pixels along a tile's side: enough work to hand out, little enough to share evenly.
+/// The side of a tile in pixels: enough work to hand out, little enough to share.
 const TILE: u32 = 16;
 
-/// What to render, apart from how.
+/// The picture to render: its camera, size and samples.
 #[derive(Clone, Copy)]
 pub struct Shot {
     pub camera: Camera,
@@ -23,17 +23,19 @@ pub struct Shot {
     pub samples: u32,
 }
 
-/// A rendered picture, and what it took.
+/// A rendered picture, and the work that it took.
 pub struct Rendered {
     pub film: Film,
     pub counters: Counters,
-    /// The rays kept, if any were asked for.
+    /// The kept rays, if any were asked for.
     pub rays: Vec<Query>,
 }
 
-/// Renders with `shade` as the value of a camera ray; a pixel is the mean over its samples. Every
-/// so many-th ray is kept, none if `keep_every` is 0. The result does not depend on the number of
-/// threads: each pixel has its own random numbers.
+/// Renders a picture in which `shade` gives the value of a camera ray.
+///
+/// A pixel is the mean over its samples. Every `keep_every`th ray is kept, or none
+/// if that is 0. The result does not depend on the number of threads, because each
+/// pixel has its own random numbers.
 pub fn render(
     shot: &Shot,
     tracer: &Tracer,

@@ -8,18 +8,21 @@ use rand_pcg::Pcg32;
 
 use crate::scene::Shape;
 
-/// The random numbers of one pixel: a stream of its own, whichever thread renders it.
+/// Returns the random numbers of one pixel.
+///
+/// They are a stream of their own, whichever thread renders the pixel.
 pub fn pixel_rng(index: usize) -> Pcg32 {
     Pcg32::new(0x853c_49e6_748f_ea9b, index as u64)
 }
 
-/// A point of the unit square.
+/// Returns a random point of the unit square.
 pub fn square(rng: &mut Pcg32) -> Vec2 {
     Vec2::new(rng.random(), rng.random())
 }
 
-/// A direction about `normal` with density cos / pi: a point of the unit disc, lifted to the
-/// hemisphere (Malley's method).
+/// Returns a direction about `normal` with density cos / pi.
+///
+/// It is a point of the unit disc, lifted to the hemisphere (Malley's method).
 pub fn cosine_hemisphere(normal: Vec3, rng: &mut Pcg32) -> Vec3 {
     let Vec2 { x, y } = square(rng);
     let (sin, cos) = (TAU * x).sin_cos();
@@ -28,7 +31,7 @@ pub fn cosine_hemisphere(normal: Vec3, rng: &mut Pcg32) -> Vec3 {
     r * cos * tangent + r * sin * bitangent + (1.0 - y).max(0.0).sqrt() * normal
 }
 
-/// A point of the shape, with uniform density over its area.
+/// Returns a point of the shape, with uniform density over its area.
 pub fn surface_point(shape: &Shape, rng: &mut Pcg32) -> Vec3 {
     let Vec2 { x, y } = square(rng);
     match shape {

@@ -1,4 +1,4 @@
-//! What answers the rays: a tree, or the naive loop over everything.
+//! Tracers: a tree, or the naive loop over all shapes.
 
 use bvhkit::heuristic::{BinnedSah, Heuristic, Median, Midpoint, SweepSah};
 use bvhkit::{Barycentrics, BuildError, Bvh, Counters, Ray, reference};
@@ -6,7 +6,7 @@ use clap::ValueEnum;
 
 use crate::scene::Shape;
 
-/// How rays find what they hit.
+/// A method to find the hits of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Method {
     /// No tree: every ray is tested against every primitive.
@@ -18,7 +18,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// Its name, as on the command line.
+    /// Returns the name, as on the command line.
     pub fn name(self) -> String {
         self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
     }
@@ -36,7 +36,7 @@ impl Method {
 
 pub type Hit = bvhkit::Hit<f32, Option<Barycentrics>>;
 
-/// The scene's shapes, ready to be hit.
+/// The shapes of a scene, ready for queries.
 pub enum Tracer {
     Naive(Vec<Shape>),
     Tree(Bvh<Shape>),
@@ -72,18 +72,18 @@ impl Tracer {
     }
 }
 
-/// A ray and what was asked about it.
+/// A ray and its query.
 #[derive(Clone, Copy, Debug)]
 pub enum Query {
     Closest(Ray),
     Any(Ray),
 }
 
-/// Casts one thread's rays: counts them and, if asked to, keeps some of them.
+/// A caster of rays that counts them and keeps some of them if asked to.
 pub struct Caster<'a> {
     tracer: &'a Tracer,
     pub counters: Counters,
-    /// Every so many-th ray is kept; 0 keeps none.
+    /// Every `keep_every`th ray is kept; 0 keeps none.
     keep_every: u64,
     pub kept: Vec<Query>,
 }

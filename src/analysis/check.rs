@@ -1,4 +1,4 @@
-//! The invariants that queries rely on, checked one by one, for any layout.
+//! Checks of the invariants that queries rely on, one by one, for any layout.
 
 use crate::geometry::{Aabb, Scalar};
 use crate::layout::{Outline, Part};
@@ -6,26 +6,33 @@ use crate::tree::MAX_DEPTH;
 use alloc::vec::Vec;
 use core::fmt;
 
-/// The first invariant of a hierarchy found broken. One that this crate built has none.
+/// The first broken invariant of a hierarchy.
+///
+/// A hierarchy as built by this crate breaks none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InvariantError {
     /// A node refers to a child that does not exist.
     DanglingChild {
-        /// The depth at which the child should be.
+        /// The depth of the missing child.
         depth: usize,
     },
-    /// There are more ways to inner nodes than primitives: one is reached twice, or has no primitive below it.
+    /// An inner node is shared or empty.
+    ///
+    /// There are more paths to inner nodes than references in leaves. So a node is reached twice,
+    /// or has no primitive below it.
     SharedNode {
-        /// The depth of the node that was one too many.
+        /// The depth of the first node beyond that number.
         depth: usize,
     },
-    /// The boxes on the ways to a primitive do not cover its own: it is in no leaf, or in one of which a ray may miss the
-    /// box, or that of a node above.
+    /// The boxes on the paths to a primitive do not cover its own box.
+    ///
+    /// The primitive is in no leaf, or a ray may miss the box of one of its leaves, or
+    /// of a node above that leaf.
     Coverage {
-        /// Its index in the input.
+        /// The index of the primitive in the input.
         index: usize,
-        /// In how many leaves it is.
+        /// The number of leaves that have the primitive.
         leaves: usize,
     },
     /// A leaf has an index that is not in the input, or was skipped.
@@ -33,9 +40,9 @@ pub enum InvariantError {
         /// The index.
         index: usize,
     },
-    /// A leaf is deeper than [`MAX_DEPTH`].
+    /// A leaf, or an inner node, is deeper than [`MAX_DEPTH`].
     TooDeep {
-        /// Its depth.
+        /// The depth of that leaf or node.
         depth: usize,
     },
 }
@@ -60,10 +67,13 @@ impl fmt::Display for InvariantError {
 
 impl core::error::Error for InvariantError {}
 
-/// Checks every invariant of a hierarchy over the primitives with `indices`, whose boxes are `aabb_of(index)`.
+/// Checks every invariant of a hierarchy over the primitives with `indices`.
 ///
-/// Terminates for any content, in O(nodes + references). Boxes need not lie in each other, only around all that is below
-/// them, which is what queries rely on: those of a compact tree are rounded outward each by itself.
+/// `aabb_of(index)` is the box of a primitive. The check terminates for any content. The walk over
+/// a valid hierarchy takes O(nodes + references).
+///
+/// Boxes need not be inside one another. They must contain all that is below them: queries rely on
+/// no more. The boxes of a compact tree are rounded outward, each by itself.
 pub(crate) fn check<S: Scalar, H: Outline<S>>(
     hierarchy: &H,
     indices: impl Iterator<Item = usize>,
@@ -74,9 +84,9 @@ pub(crate) fn check<S: Scalar, H: Outline<S>>(
         is_known.resize(is_known.len().max(index + 1), false);
         is_known[index] = true;
     }
-    // Which primitive is in a leaf, and what all boxes on the way there have in common.
+    // Each primitive found in a leaf, and the intersection of all boxes on the path to it.
     let mut places: Vec<(usize, Aabb<S>)> = Vec::new();
-    // A tree has fewer inner nodes than references: more must have been seen before.
+    // A tree has fewer inner nodes than references: beyond that, a node is shared or empty.
     let (mut budget, mut error) = (hierarchy.references(), None);
     let mut open: Vec<_> = hierarchy.root().map(|root| (root, hierarchy.aabb(), 0)).into_iter().collect();
     while let Some((place, within, depth)) = open.pop() {
@@ -118,7 +128,10 @@ pub(crate) fn check<S: Scalar, H: Outline<S>>(
     Ok(())
 }
 
-/// Whether boxes cover another: one of them does, or they do so with its parts on both sides of one of their faces.
+/// Returns whether the boxes of `places` cover `aabb`.
+///
+/// They do if one of them contains it. They also do if a face of one of them cuts it into two
+/// parts, and they cover both parts.
 fn is_covered<S: Scalar>(aabb: Aabb<S>, places: &[(usize, Aabb<S>)]) -> bool {
     let mut open = alloc::vec![aabb];
     while let Some(aabb) = open.pop() {
@@ -143,12 +156,14 @@ mod tests {
     use crate::tree::{Child, Node, Tree};
     use crate::{Bvh, Primitive, Sphere};
 
-    /// More than there are depths, so that a path can be too long without a node too many.
+    /// Returns more spheres than `MAX_DEPTH`.
+    ///
+    /// So a path can be too long before nodes are too many.
     fn spheres() -> Vec<Sphere> {
         (0..100u8).map(|i| Sphere::new([f32::from(i), f32::from(i % 7), 0.0], 0.25)).collect()
     }
 
-    /// Builds a good tree, breaks it, and says what the check finds.
+    /// Builds a valid tree, breaks it, and returns the error that the check finds.
     fn broken(change: impl FnOnce(&mut Tree)) -> InvariantError {
         let spheres = spheres();
         let bvh = Bvh::builder().layout::<Tree>().max_leaf_size(2).build(&spheres).unwrap();
@@ -159,7 +174,9 @@ mod tests {
         found(&tree).unwrap_err()
     }
 
-    /// The same where no box can be too small for what is moved into it.
+    /// Does the same with boxes around everything.
+    ///
+    /// So no box is too small for a primitive that is moved into it.
     fn broken_inside(change: impl FnOnce(&mut Tree)) -> InvariantError {
         broken(|tree| {
             let everything = Node::new([tree.aabb; 2]).planes;
@@ -191,7 +208,7 @@ mod tests {
             broken_inside(|t| *t.indices.iter_mut().find(|index| **index == 4).unwrap() = 3),
             InvariantError::Coverage { index: 4, leaves: 0 }
         );
-        // The root's second child is visited first, and then is visited again.
+        // The walk visits the root's second child first, and again by way of the first child.
         assert!(matches!(
             broken_inside(|t| t.nodes[0].children[0] = Child::inner(0)),
             InvariantError::SharedNode { .. }
@@ -215,7 +232,7 @@ mod tests {
         assert!(!covers(&[left, corner]) && !covers(&[right]) && !covers(&[]));
     }
 
-    /// What a check against other primitives than those of the build finds.
+    /// Checks a layout against the primitives of the build, and three other lists.
     fn mismatches<H: Outline<f32>>(layout: &H) -> [Result<(), InvariantError>; 4] {
         let spheres = spheres();
         let grown = |index: usize| Sphere { radius: if index == 7 { 9.0 } else { 0.25 }, ..spheres[index] };

@@ -5,14 +5,16 @@ use crate::layout::{Outline, Part};
 use crate::parallel;
 use alloc::vec::Vec;
 
-/// Triangles in a task. Their sums are added in order, so that the result does not depend on the number of threads.
+/// The number of triangles in a task.
+///
+/// The sums of tasks are added in order: the result does not depend on the number of threads.
 const CHUNK: usize = 256;
 
-/// A node, in depth-first order: all that is below it follows.
+/// A node in depth-first order: all nodes below it follow.
 struct Node {
     aabb: Aabb<f64>,
     depth: usize,
-    /// The first node that is not below it.
+    /// The index of the next node that is not below it.
     end: usize,
     cost: f64,
 }
@@ -24,15 +26,17 @@ struct Place {
     leaf: usize,
 }
 
-/// The sum over nodes of cost times area of the surface in its box, but not below it, over the area of all the surface:
-/// see [`Bvh::epo`](crate::Bvh::epo).
+/// Returns the end-point overlap: see [`Bvh::epo`](crate::Bvh::epo).
+///
+/// It is a sum over nodes, over the area of all the surface. Each node adds its cost times the area
+/// of the surface that is inside its box, but not below it.
 pub(crate) fn epo<S: Scalar, H: Outline<S>>(
     hierarchy: &H,
     corners: impl Fn(usize) -> [[S; 3]; 3] + Sync,
 ) -> f64 {
     let root = hierarchy.aabb();
     let coordinates = [root.min, root.max].into_iter().flatten().map(|x| x.to_f64().abs());
-    // So that no area overflows; a power of two, which rounds nothing.
+    // The scale keeps areas from overflow; as a power of two, it rounds nothing.
     let scale = coordinates.fold(0.0, f64::max).inverse_power_of_two();
     let scaled = |point: [S; 3]| point.map(|x| x.to_f64() * scale);
 
@@ -45,7 +49,7 @@ pub(crate) fn epo<S: Scalar, H: Outline<S>>(
         for places in triangles {
             parts[0].set(&corners(places[0].index as usize).map(&scaled));
             let own = parts[0].area();
-            // Not if it is NaN.
+            // False if the area is NaN.
             if own > 0.0 {
                 cost += foreign_cost(&nodes, places, &mut parts);
                 area += own;
@@ -57,9 +61,10 @@ pub(crate) fn epo<S: Scalar, H: Outline<S>>(
     if area > 0.0 { cost / area } else { 0.0 }
 }
 
-/// Cost times area of what lies of a triangle in boxes of nodes that it is not below.
+/// Returns the sum of cost times area over the nodes that a triangle is not below.
 ///
-/// `parts` has the triangle, and room for what is left of it at each depth.
+/// The area is that of the triangle's part in the node's box. `parts` has the triangle, and room
+/// for the rest of it at each depth.
 fn foreign_cost(nodes: &[Node], places: &[Place], parts: &mut [Polygon]) -> f64 {
     let (mut sum, mut number) = (0.0, 0);
     while let Some(node) = nodes.get(number) {
@@ -76,7 +81,7 @@ fn foreign_cost(nodes: &[Node], places: &[Place], parts: &mut [Polygon]) -> f64 
     sum
 }
 
-/// All nodes, and the primitives in leaves, by index.
+/// Returns all nodes, depth first, and the primitives in leaves, by index.
 fn in_order<S: Scalar, H: Outline<S>>(
     hierarchy: &H,
     scaled: impl Fn(Aabb<S>) -> Aabb<f64>,
@@ -96,7 +101,7 @@ fn in_order<S: Scalar, H: Outline<S>>(
                 places.push(Place { index, leaf: number });
             }
         });
-        // As in the SAH cost.
+        // The same costs as in the SAH cost.
         let cost = if primitives > 0 { f64::from(primitives) } else { 1.0 };
         nodes.push(Node { aabb: scaled(aabb), depth, end: 0, cost });
     }

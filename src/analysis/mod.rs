@@ -1,4 +1,4 @@
-//! What a hierarchy looks like: its invariants, its shape, and how good it is.
+//! Inspection of a hierarchy: its invariants, its shape, and its quality.
 
 mod check;
 mod epo;

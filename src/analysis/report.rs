@@ -1,4 +1,4 @@
-//! What a tree looks like: counts, depths, leaf sizes, SAH cost, bytes.
+//! The report on a tree: counts, depths, leaf sizes, SAH cost, bytes.
 
 use crate::geometry::{Aabb, Scalar};
 use crate::layout::{Outline, Part};
@@ -10,26 +10,33 @@ use core::fmt;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct TreeReport {
-    /// Primitives in leaves.
+    /// The number of primitives in leaves.
     pub primitives: usize,
-    /// The same, each as often as it is in a leaf: more after spatial splits.
+    /// The number of references in leaves.
+    ///
+    /// Each primitive counts as often as it is in a leaf. Spatial splits add references.
     pub references: usize,
-    /// Nodes with children: two in a [`Tree`](crate::Tree), up to N in a [`WideTree`](crate::WideTree).
+    /// The number of nodes with children.
+    ///
+    /// A node has two children in a [`Tree`](crate::Tree), up to N in a
+    /// [`WideTree`](crate::WideTree).
     pub inner_nodes: usize,
-    /// Leaves, 0 for an empty tree.
+    /// The number of leaves; 0 for an empty tree.
     pub leaves: usize,
     /// The depth of the deepest leaf; the root has depth 0.
     pub max_depth: usize,
     /// The mean depth of the leaves, unweighted.
     pub mean_leaf_depth: f64,
-    /// How many primitives leaves have.
+    /// The number of primitives per leaf: minimum, maximum, mean and histogram.
     pub leaf_sizes: LeafSizes,
-    /// The expected cost of a ray that meets the root's box and hits nothing, by the surface area
-    /// heuristic (Goldsmith and Salmon 1987, MacDonald and Booth 1990): the sum over inner nodes
-    /// of 1 and over leaves of their number of primitives, each weighted with the node's surface
-    /// area over the root's. One unit is a step through an inner node, or a primitive's test.
+    /// The expected cost of a ray by the surface area heuristic (SAH).
+    ///
+    /// The ray meets the root's box and hits nothing (Goldsmith and Salmon 1987, MacDonald and
+    /// Booth 1990). The cost is a sum over nodes: 1 for an inner node, the number of primitives for
+    /// a leaf. Each term is weighted with the surface area of the node over that of the root. One
+    /// unit is a step through an inner node, or the test of a primitive.
     pub sah_cost: f64,
-    /// Bytes of nodes, indices, and what leaves have copied of the primitives.
+    /// The number of bytes of nodes, indices, and primitive data copied to leaves.
     pub memory_bytes: usize,
 }
 
@@ -37,18 +44,20 @@ pub struct TreeReport {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct LeafSizes {
-    /// In the smallest leaf; 0 for an empty tree.
+    /// The number in the smallest leaf; 0 for an empty tree.
     pub min: usize,
-    /// In the largest leaf; 0 for an empty tree.
+    /// The number in the largest leaf; 0 for an empty tree.
     pub max: usize,
-    /// The mean; 0 for an empty tree.
+    /// The mean number; 0 for an empty tree.
     pub mean: f64,
-    /// `histogram[n]` leaves have n primitives, for n up to 16; the last element counts all larger.
+    /// The number of leaves with n primitives is `histogram[n]`, for n up to 16.
+    ///
+    /// The last element counts all larger leaves.
     pub histogram: [usize; 18],
 }
 
 impl TreeReport {
-    /// Walks a hierarchy once and reports on it.
+    /// Walks a hierarchy once, and returns the report on it.
     pub(crate) fn new<S: Scalar, H: Outline<S>>(hierarchy: &H) -> Self {
         // In f64, and halved before the difference: an extent may overflow its own scalar.
         let halved = |aabb: &Aabb<S>| Aabb {
@@ -59,7 +68,7 @@ impl TreeReport {
         let scale = halved(&root).area_scale();
         let area = |aabb: &Aabb<S>| halved(aabb).scaled_half_area(scale);
         let root_area = area(&root);
-        // A root without area is a point or a segment: what meets it meets everything in it.
+        // A root without area is a point or a segment: a ray that meets it meets everything in it.
         let weight = |aabb: &Aabb<S>| if root_area > 0.0 { area(aabb) / root_area } else { 1.0 };
 
         let len = hierarchy.len();
@@ -114,7 +123,7 @@ impl fmt::Display for TreeReport {
 }
 
 impl<S: Scalar> Tree<S> {
-    /// Its shape and estimated cost.
+    /// Returns the shape and the estimated cost of the tree.
     pub fn report(&self) -> TreeReport {
         TreeReport::new(self)
     }

@@ -1,14 +1,16 @@
-//! Memory that one build leaves to the next.
+//! Memory that one build passes on to the next.
 
 use super::reference::PrimRef;
 use crate::memory::keep_larger;
 use crate::tree::{LeafRange, Node, Tree};
 use alloc::vec::Vec;
 
-/// The large buffers of a build; what is left in them is of no use. Small ones, of which there are many, come from the allocator
-/// every time.
+/// The large buffers of a build.
+///
+/// Their remaining content has no meaning. Small buffers, of which there are many, come from the
+/// allocator each time.
 pub(crate) struct Buffers<S> {
-    /// What the tree is to be built of: the input of a build.
+    /// The references that the tree is built over: the input of a build.
     pub references: Vec<PrimRef<S>>,
     pub(super) nodes: Vec<Node<S>>,
     pub(super) indices: Vec<u32>,
@@ -22,7 +24,7 @@ impl<S> Default for Buffers<S> {
 }
 
 impl<S> Buffers<S> {
-    /// Takes over what is left of a tree.
+    /// Takes over the buffers of a tree.
     pub fn reclaim(&mut self, tree: Tree<S>) {
         let Tree { nodes, indices, leaf_ranges, .. } = tree;
         keep_larger(&mut self.nodes, nodes);
@@ -30,7 +32,7 @@ impl<S> Buffers<S> {
         keep_larger(&mut self.leaf_ranges, leaf_ranges);
     }
 
-    /// Bytes of memory.
+    /// Returns the size of the buffers, in bytes.
     pub fn bytes(&self) -> usize {
         size_of::<PrimRef<S>>() * self.references.capacity()
             + size_of::<Node<S>>() * self.nodes.capacity()

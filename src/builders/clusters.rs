@@ -1,28 +1,33 @@
-//! The build of clusters: splits above, Morton's curve below.
+//! Builds of clusters: splits above, the Morton curve below.
 //!
 //! ```text
-//! references -> curve -> clusters: at most so many neighbours, alike in size, cut into a row of leaves
-//!                                  or, where the layout cannot divide leaves, with a tree each, in one pass
-//!            -> splits of clusters -> joined
+//! references -> sorted along the curve -> clusters: neighbours of similar areas, up to `size`
+//!    each: partitioned into a row of leaves,
+//!          or, if the layout cannot divide leaves, a tree of its own, in one pass
+//! clusters -> split by the heuristic -> joined
 //! ```
 //!
-//! Most of a build's time goes into its many small nodes, most of a tree's quality into its few large ones. So the curve
-//! settles the small ones, and the heuristic the others.
+//! Most of the time of a build goes into its many small nodes, and most of the quality of a
+//! tree into its few large ones. So the curve settles the small nodes, and the heuristic
+//! settles the large ones.
 //!
-//! The boxes of large primitives among small ones would hide what is small from the heuristic: so the primitives of a
-//! cluster are about as large as one another, if it is not small itself. A bound on its box alone made single ones of the
-//! primitives of a volume (737 ns a triangle of a soup instead of 150).
+//! The boxes of large primitives among small ones would hide the small ones from the heuristic. So
+//! the primitives of a cluster have similar areas, unless the cluster itself is small.
 //!
-//! Refused, in steps of rays over those with `Quality::Balanced` (six scenes; clusters of 128 take 1.17):
-//! - clusters of 4 or 8: 0.97 to 1.05, and no quicker to build than none: some 280 ns go into each node, of which there are as many;
-//! - rows cut along the whole curve, and splits of their leaves, 6 primitives each, down to sets of 16, what a node holds: 1.14, for a
-//!   seventh more time; down to single ones, with reinsertion, large primitives apart: 1.04, for three quarters of the time of
-//!   `Balanced`;
-//! - splits of clusters of 4 to 32 above sets of 1,024, of primitives below: 0.9 to 1.2 by luck, and no quicker than `Balanced` (sponza's
-//!   tree 38 ms): 8 ms for the clusters, 4 for their splits, and the 25 that splits of up to 1,024 take in any case;
+//! Refused (clusters of 128 take 1.17 times the ray steps of `Quality::Balanced`; measured:
+//! docs/decisions.md, 14):
+//! - a bound on the box of a cluster alone: each primitive of a volume became a cluster of its own;
+//! - clusters of 4 or 8: no quicker to build than no clusters, since each node takes its time, and
+//!   there are as many nodes;
+//! - rows partitioned along the whole curve, and splits of their leaves, 6 primitives each, down to
+//!   sets of 16, the content of a node: hardly fewer steps, for more time;
+//! - the same down to single leaves, with reinsertion, and large primitives apart: more steps than
+//!   `Quality::Balanced`, for most of its time;
+//! - splits of clusters of 4 to 32 above sets of 1,024, and of primitives below: steps that depend
+//!   on luck, and no quicker than `Quality::Balanced`;
 //! - Hilbert's curve: as good as Morton's;
-//! - codes with bits of size among those of place (Vinkler, Bittner and Havran, Extended Morton Codes, HPG 2017): no better in six
-//!   ways of mixing them.
+//! - codes with bits of size among those of position (Vinkler, Bittner and Havran, Extended Morton
+//!   Codes, HPG 2017): no better in six ways of mixing them.
 
 use super::buffers::Buffers;
 use super::heuristic::codes;
@@ -42,23 +47,32 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Up to this many times its primitives' share of the scene's area a cluster's box may have, whatever is in it.
+/// Maximum area of a small cluster's box, in units of its primitives' shares.
+///
+/// A primitive's share is the scene's area divided by the number of primitives. A small cluster may
+/// hold primitives of any areas.
 const LARGEST: f64 = 16.0;
 
-/// How evenly the boxes in a larger one have to be large: the square of their areas' sum over the sum of their squares, which
-/// is their number if all are equal and 1 if one outweighs the others, in parts of their number.
+/// Least evenness of the areas in a cluster that is not small.
+///
+/// The evenness is (sum of areas)^2 / (n * sum of squared areas): 1 if all areas are equal, 1/n
+/// if one dominates.
 const EVEN: f64 = 0.5;
 
-/// No cluster's subtree is deeper: what is left of [`MAX_DEPTH`] is the splits'.
+/// Maximum depth of a cluster's subtree.
+///
+/// The splits have the rest of [`MAX_DEPTH`].
 const DEPTH: usize = 16;
 
-/// How deep the splits may go.
+/// Maximum depth of the splits above clusters.
 pub(super) const SPLIT_DEPTH: usize = MAX_DEPTH - DEPTH;
 
 const _: () = assert!(TASK_SIZE < 1 << DEPTH, "what lies in a task halves to one in fewer steps");
 
-/// The tree over references, at least one, in clusters of up to `size`, which `split` makes a tree of: one whose leaves
-/// are single clusters.
+/// Builds the tree over references, in clusters of up to `size`.
+///
+/// Requires at least one reference. `split` makes a tree of the clusters, whose leaves are
+/// single clusters.
 pub(super) fn build<S: Scalar>(
     references: &mut Vec<PrimRef<S>>,
     scene: &Aabb<S>,
@@ -68,7 +82,8 @@ pub(super) fn build<S: Scalar>(
     buffers: &mut Buffers<S>,
     split: &dyn Fn(&mut Vec<PrimRef<S>>) -> Subtree<S>,
 ) -> Subtree<S> {
-    // Of a cluster that is cut, no more than the layout can divide; of one with a tree, no more than lie in one task.
+    // A partitioned cluster has at most as many primitives as the layout can divide; a cluster with
+    // a tree of its own fits one task.
     let is_cut = rules.max_leaf_ranges > 1;
     let size =
         if is_cut { size.min(rules.max_leaf_size * rules.max_leaf_ranges) } else { size.min(TASK_SIZE) };
@@ -107,13 +122,13 @@ pub(super) fn build<S: Scalar>(
     });
     let (subtrees, boxes): (Vec<_>, Vec<_>) = clusters.unzip();
     if boxes.is_empty() {
-        // It was stopped.
+        // The build was stopped.
         return Subtree::with_capacity(0, 0);
     }
     let mut clusters: Vec<_> = (0..).zip(boxes).map(|(number, aabb)| PrimRef::new(aabb, number)).collect();
     let Subtree { mut nodes, root, indices, .. } = split(&mut clusters);
     if progress.poll() == BuildControl::Stop {
-        // Some of its leaves may be empty.
+        // The build was stopped: some leaves may be empty.
         return Subtree::with_capacity(0, 0);
     }
     let moved = |child: Child| match indices.get(child.slots()) {
@@ -127,18 +142,20 @@ pub(super) fn build<S: Scalar>(
     join(top, &subtrees, buffers)
 }
 
-/// Finds clusters among neighbours.
+/// The search for clusters among neighbours.
 struct Finder<S> {
-    /// The most primitives in one.
+    /// Maximum number of primitives in a cluster.
     size: usize,
-    /// As for [`Aabb::scaled_half_area`].
+    /// The scale for [`Aabb::scaled_half_area`].
     scale: S,
-    /// A primitive's of the scene's area, if all had the same.
+    /// A primitive's share of the scene's area, if all primitives have the same.
     share: f64,
 }
 
 impl<S: Scalar> Finder<S> {
-    /// The clusters of sorted keys and their references, in order, and their boxes.
+    /// Returns the clusters of sorted keys, in order, and their boxes.
+    ///
+    /// `sorted` holds the references of the keys.
     fn find(&self, keys: &[u64], sorted: &[PrimRef<S>]) -> Vec<(Range<usize>, Aabb<S>)> {
         let all = 0..keys.len();
         let (mut found, mut open) = (Vec::new(), vec![all]);
@@ -154,7 +171,7 @@ impl<S: Scalar> Finder<S> {
         found
     }
 
-    /// The box of a row, if it is to be a cluster.
+    /// Returns the box of a row of neighbours, if it becomes a cluster.
     fn cluster(&self, row: &[PrimRef<S>]) -> Option<Aabb<S>> {
         if row.len() > self.size {
             return None;
@@ -171,14 +188,16 @@ impl<S: Scalar> Finder<S> {
     }
 }
 
-/// The clusters of a task, one after another, with their first and last places and their roots, whose numbers are counted from the
-/// first.
+/// The clusters of a task, one after another.
+///
+/// Each has the place where it begins, the place where it ends, and its root. The root's numbers
+/// are counted from the begin.
 struct Built<S> {
     subtree: Subtree<S>,
     clusters: Vec<(Place, Place, Root<S>)>,
 }
 
-/// Among nodes, indices and runs.
+/// A place in the lists of nodes, indices and leaf ranges.
 struct Place {
     nodes: usize,
     indices: usize,
@@ -196,12 +215,12 @@ impl<S: Scalar> Built<S> {
     }
 }
 
-/// A row of leaves of each cluster.
+/// Partitions each cluster into a row of leaves.
 fn cut<S: Scalar>(cutter: &Cutter<S>, sorted: &[PrimRef<S>], found: &[(Range<usize>, Aabb<S>)]) -> Built<S> {
     let mut built = Built::with_capacity(0, sorted.len());
     let mut last = [Vec::new(), Vec::new()];
     for pair in found.chunks(2) {
-        // What fits a leaf is one.
+        // A cluster that fits one leaf has no leaf ranges.
         let rows = [pair.first(), pair.get(1)].map(|row| match row {
             Some((range, aabb)) if range.len() > LEAF_WIDTH => (&sorted[range.clone()], aabb),
             _ => (&[][..], &pair[0].1),
@@ -218,7 +237,7 @@ fn cut<S: Scalar>(cutter: &Cutter<S>, sorted: &[PrimRef<S>], found: &[(Range<usi
     built
 }
 
-/// A tree over each cluster.
+/// Builds a tree over each cluster.
 fn grow<S: Scalar>(order: &Order<'_, S>, keys: &[u64], found: &[(Range<usize>, Aabb<S>)]) -> Built<S> {
     let mut built = Built::with_capacity(keys.len() / 4, keys.len());
     let mut parts = Vec::with_capacity(MAX_DEPTH + 1);

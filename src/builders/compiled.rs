@@ -1,8 +1,8 @@
-//! What is compiled in this crate, for `f32` and for `f64`.
+//! The functions that are compiled in this crate, for `f32` and for `f64`.
 //!
-//! Generic functions are compiled anew in each crate that uses them. Here are those that know
-//! nothing of the primitives, the heuristic and the layout but by reference: a client compiles a
-//! loop over its primitives' boxes, and calls.
+//! A generic function is compiled again in each crate that uses it. The functions here know the
+//! primitives, the heuristic and the layout at most by reference. So a client compiles a loop over
+//! the boxes of its primitives, and calls these functions.
 
 use super::heuristic::{BinnedSah, BuildNode, Proposal, SpatialSah, Split, SweepSah, new_codes};
 use super::reference::PrimRef;
@@ -11,29 +11,29 @@ use crate::geometry::{Aabb, Scalar};
 use crate::tree::Tree;
 use alloc::vec::Vec;
 
-/// Builders of a scalar.
+/// The builders of a scalar.
 pub trait CompiledBuilders: Sized {
-    /// Makes a tree better.
+    /// Improves a tree by reinsertion.
     fn optimise(tree: &mut Tree<Self>, optimise: &Optimise) -> OptimiseStats
     where
         Self: Scalar;
 
-    /// What [`BinnedSah`] proposes.
+    /// Returns the proposal of [`BinnedSah`].
     fn binned(heuristic: &BinnedSah, node: &BuildNode<'_, Self>) -> Proposal<Self>
     where
         Self: Scalar;
 
-    /// What [`SpatialSah`] proposes.
+    /// Returns the proposal of [`SpatialSah`].
     fn spatial(heuristic: &SpatialSah, node: &BuildNode<'_, Self>) -> Proposal<Self>
     where
         Self: Scalar;
 
-    /// What [`SweepSah`] proposes.
+    /// Returns the proposal of [`SweepSah`].
     fn sweep(heuristic: &SweepSah, node: &BuildNode<'_, Self>) -> Split<Self>
     where
         Self: Scalar;
 
-    /// Each reference's place on Morton's curve through a box.
+    /// Returns the Morton code of each reference: its place on the curve in a box.
     fn codes(references: &[PrimRef<Self>], scene: &Aabb<Self>) -> Vec<u64>
     where
         Self: Scalar;

@@ -1,13 +1,14 @@
-//! The order of the build: large nodes level by level, the many small ones as tasks of their own.
+//! The order of a build: large nodes level by level, small nodes as tasks.
 //!
-//! 1. **Top.** All open nodes of a level are divided at once, on all threads; those with at most
-//!    [`TASK_SIZE`] references become tasks, and so does what is left when the build has to hurry.
-//! 2. **Tasks.** Each builds its subtree into a list of its own, depth first.
-//! 3. **Join.** The top and the lists are laid out depth first.
+//! 1. **Top.** All open nodes of a level are split at once, on all threads. A node with at most
+//!    [`TASK_SIZE`] references becomes a task. When the build has to hurry or stop, every open
+//!    node becomes a task.
+//! 2. **Tasks.** Each task builds its subtree into lists of its own, depth first.
+//! 3. **Join.** The top and the subtrees are laid out depth first.
 //!
-//! Every result has a place that follows from the data alone, never from the threads: the tree is
-//! the same on any number of them. Nothing recurses: neither stack depth nor time hang on a
-//! heuristic's good will.
+//! The place of each result follows from the data alone, never from the threads: the tree is the
+//! same on any number of threads. Nothing recurses: neither stack depth nor build time depends on a
+//! well-behaved heuristic.
 
 use super::buffers::Buffers;
 use super::clusters::{self, SPLIT_DEPTH};
@@ -25,13 +26,13 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::mem::take;
 
-/// A set of references that is to become a subtree.
+/// A set of references that becomes a subtree, and the parent of the subtree.
 struct OpenNode<'r, S> {
     set: Set<'r, S>,
     parent: Parent,
 }
 
-/// Makes the inner node above two sides.
+/// Appends the inner node above two sets, and returns the sets as open nodes.
 fn push<'r, S: Scalar>(
     subtree: &mut Subtree<S>,
     parent: Parent,
@@ -42,14 +43,16 @@ fn push<'r, S: Scalar>(
     [OpenNode { set: left, parent: Some((index, 0)) }, OpenNode { set: right, parent: Some((index, 1)) }]
 }
 
-/// What is the same for all nodes.
+/// The data that all nodes of a build share.
 struct Build<'h, S: Scalar> {
     rules: &'h Rules<'h, S>,
     progress: &'h Progress<'h>,
     scene: Aabb<S>,
 }
 
-/// Builds the tree over the buffers' references, which are valid; none if it was told to stop.
+/// Builds the tree over the references of `buffers`; `None` if it was stopped.
+///
+/// The references must be valid.
 pub(crate) fn build_tree<S: Scalar>(
     buffers: &mut Buffers<S>,
     rules: &Rules<'_, S>,
@@ -71,7 +74,7 @@ pub(crate) fn build_tree<S: Scalar>(
     Some(Tree { nodes, root, aabb, indices, leaf_ranges, primitives })
 }
 
-/// As the heuristic wants it: by codes, by splits of clusters, or by splits.
+/// Builds as the heuristic asks: by codes, by splits of clusters, or by splits.
 fn build_whole<S: Scalar>(
     references: &mut Vec<PrimRef<S>>,
     aabb: Aabb<S>,
@@ -98,7 +101,7 @@ fn build_whole<S: Scalar>(
     })
 }
 
-/// PackedQuery the heuristic to split every node.
+/// Builds by splits: the heuristic is asked to split every node.
 fn build_by_splits<S: Scalar>(
     references: &mut Vec<PrimRef<S>>,
     aabb: Aabb<S>,
@@ -107,7 +110,7 @@ fn build_by_splits<S: Scalar>(
     buffers: &mut Buffers<S>,
 ) -> Subtree<S> {
     let len = references.len();
-    // Slots have 32 bits.
+    // Slots are numbered with 32 bits.
     let most = len.saturating_add(rules.heuristic.extra_references(len)).min(u32::MAX as usize);
     parallel::extend_to(references, most, PrimRef::new(Aabb::EMPTY, u32::MAX));
     let build = Build { rules, progress, scene: aabb };
@@ -117,8 +120,10 @@ fn build_by_splits<S: Scalar>(
     join(top, &subtrees.iter().map(Subtree::all).collect::<Vec<_>>(), buffers)
 }
 
-/// Divides all sets of more than [`TASK_SIZE`] references, and returns the others as tasks; and, once the build is not steady
-/// any more, those that are left.
+/// Splits all large sets, and returns the other sets as tasks.
+///
+/// A set is large if it has more than [`TASK_SIZE`] references. Once the build is not steady any
+/// more, every set that is left becomes a task.
 fn build_top<'r, S: Scalar>(root: OpenNode<'r, S>, build: &Build<'_, S>) -> (Subtree<S>, Vec<Set<'r, S>>) {
     let mut top = Subtree::with_capacity(0, 0);
     let mut tasks = Vec::new();
@@ -132,7 +137,7 @@ fn build_top<'r, S: Scalar>(root: OpenNode<'r, S>, build: &Build<'_, S>) -> (Sub
         for (parent, divided) in divided {
             match divided {
                 Ok(sides) => level.extend(push(&mut top, parent, sides)),
-                // A leaf, too.
+                // A leaf becomes a task too.
                 Err(set) => {
                     top.refer(parent, task_child(tasks.len()));
                     tasks.push(set);
@@ -143,7 +148,9 @@ fn build_top<'r, S: Scalar>(root: OpenNode<'r, S>, build: &Build<'_, S>) -> (Sub
     (top, tasks)
 }
 
-/// Builds everything below one set, depth first: a left child is the node after its parent.
+/// Builds everything below one set, depth first.
+///
+/// A left child is the node after its parent.
 fn build_subtree<S: Scalar>(root: Set<'_, S>, build: &Build<'_, S>) -> Subtree<S> {
     let Build { rules, progress, scene } = build;
     let len = root.len;

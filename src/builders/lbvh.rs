@@ -1,12 +1,13 @@
-//! The build without splits: references are sorted by codes along a curve, and the tree follows the codes' bits.
+//! Builds without splits: a tree that follows the bits of sorted codes.
 //!
 //! ```text
-//! codes -> curve -> top, split where the highest bit changes, down to tasks -> tasks, each in one pass from the leaves up
-//!       -> joined
+//! codes -> sorted keys -> top: split where the highest bit changes, down to tasks
+//!                      -> tasks: each in one pass from the leaves up
+//!                      -> joined
 //! ```
 //!
-//! No path is longer than a key has bits, of which there are [`MAX_DEPTH`](crate::MAX_DEPTH) at the most: each step down
-//! settles one.
+//! References are sorted by codes along a curve. No path is longer than the number of bits in a
+//! key, which is at most [`MAX_DEPTH`](crate::MAX_DEPTH): each step down settles one bit.
 
 use super::buffers::Buffers;
 use super::morton_order::{Curve, difference};
@@ -21,11 +22,13 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// How many references before one's turn it is asked for.
+/// Prefetch distance, in references.
 const AHEAD: usize = 32;
 
-/// The subtree over references, as many as there are codes, and at least one, no deeper than `depth`, in which there is
-/// room for as many.
+/// Builds the subtree over references, no deeper than `depth`.
+///
+/// Requires as many codes as references, and at least one. `depth` bits must be enough for the
+/// place of a reference.
 pub(super) fn build<S: Scalar>(
     references: &[PrimRef<S>],
     mut codes: Vec<u64>,
@@ -49,7 +52,7 @@ pub(super) fn build<S: Scalar>(
         (subtree, root.aabb)
     });
     let (subtrees, boxes): (Vec<_>, Vec<_>) = built.into_iter().unzip();
-    // Children lie behind their parents.
+    // Children are stored after their parents.
     for index in (0..top.nodes.len()).rev() {
         let children = top.nodes[index].children;
         let boxes = children.map(|child| match task_of(child, &top) {
@@ -61,7 +64,7 @@ pub(super) fn build<S: Scalar>(
     join(top, &subtrees.iter().map(Subtree::all).collect::<Vec<_>>(), buffers)
 }
 
-/// What the keys stand for.
+/// The references that keys stand for, and the largest leaf.
 pub(super) struct Order<'r, S> {
     pub references: &'r [PrimRef<S>],
     pub curve: &'r Curve<'r>,
@@ -79,17 +82,19 @@ pub(super) struct Part<S> {
 pub(super) struct Root<S> {
     pub child: Child,
     pub aabb: Aabb<S>,
-    /// Of the longest path below, in steps.
+    /// The length of the longest path down to a leaf, in steps.
     pub height: usize,
 }
 
 impl<S: Scalar> Order<'_, S> {
-    /// Appends the tree over sorted keys, at least one, to the nodes and the indices of `subtree`: numbers in it are counted from
-    /// there. `open` is memory, empty before and after.
+    /// Appends the tree over sorted keys to `subtree`, and returns its root.
     ///
-    /// A node ends where neighbouring keys differ in a higher bit than any two inside. Keys come from the right, and the
-    /// nodes that await what is on their left lie on a stack: so nodes are made right side first and parents last,
-    /// which backwards is depth first.
+    /// Requires at least one key. In the new nodes, the numbers of nodes and slots are counted from
+    /// the first one appended. `open` is scratch memory, empty before and after.
+    ///
+    /// A node ends where neighbouring keys differ in a higher bit than any two keys inside. Keys
+    /// are visited from right to left. Nodes that wait for the part on their left are on a stack.
+    /// So right sides are made first and parents last, which in reverse is depth first.
     pub fn build(&self, keys: &[u64], subtree: &mut Subtree<S>, open: &mut Vec<Part<S>>) -> Root<S> {
         let start = subtree.nodes.len();
         for first in (0..keys.len()).rev() {
@@ -107,7 +112,7 @@ impl<S: Scalar> Order<'_, S> {
         }
         let mut root = self.settled(open.pop().unwrap_or(Part { keys: 0..0, root: None }), keys);
         subtree.indices.extend(keys.iter().map(|key| self.reference(key).index));
-        // Numbers are counted from the last node made.
+        // Reversed: numbers are counted from the last node made.
         let nodes = &mut subtree.nodes[start..];
         let last = nodes.len().wrapping_sub(1) as u32;
         let turned =
@@ -120,7 +125,7 @@ impl<S: Scalar> Order<'_, S> {
         root
     }
 
-    /// The node above two parts, or a leaf of both.
+    /// Returns the node above two parts, or a leaf of both.
     fn above(
         &self,
         left: Part<S>,
@@ -140,7 +145,7 @@ impl<S: Scalar> Order<'_, S> {
         Part { keys: both, root: Some(Root { child, aabb: left.aabb.union(right.aabb), height }) }
     }
 
-    /// A part that does not grow any more.
+    /// Returns the root of a part that does not grow any more.
     fn settled(&self, part: Part<S>, keys: &[u64]) -> Root<S> {
         let leaf = || Root {
             child: Child::leaf(part.keys.clone()),
@@ -150,7 +155,7 @@ impl<S: Scalar> Order<'_, S> {
         part.root.unwrap_or_else(leaf)
     }
 
-    /// The box around what keys stand for.
+    /// Returns the box around the references of keys.
     pub fn bounds(&self, keys: &[u64]) -> Aabb<S> {
         bounds(keys.iter().map(|key| self.reference(key)))
     }
@@ -159,7 +164,7 @@ impl<S: Scalar> Order<'_, S> {
         &self.references[self.curve.place(*key)]
     }
 
-    /// Those of keys, in their order.
+    /// Returns the references of keys, in the order of the keys.
     pub fn sorted(&self, keys: &[u64]) -> Vec<PrimRef<S>> {
         let ahead = keys.iter().skip(AHEAD).map(Some).chain(core::iter::repeat(None));
         let in_order = keys.iter().zip(ahead).map(|(key, ahead)| {
@@ -169,7 +174,7 @@ impl<S: Scalar> Order<'_, S> {
         in_order.collect()
     }
 
-    /// PackedQuery for a reference to be brought into the cache: they lie in the input's order.
+    /// Prefetches a reference: references are stored in the order of the input.
     #[inline(always)]
     fn ask_for(&self, key: &u64) {
         prefetch(core::ptr::from_ref(self.reference(key)).cast(), size_of::<PrimRef<S>>());

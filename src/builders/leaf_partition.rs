@@ -1,15 +1,17 @@
-//! Neighbours along a curve as a row of small leaves: where to cut between them.
+//! Partition of neighbours along a curve into a row of small leaves.
 //!
-//! By dynamic programming, the least cost of the first k in leaves of up to 8:
+//! Dynamic programming finds the least cost of the first k references, in leaves of up to 8:
 //!
 //! ```text
 //! least(0) = 0
-//! least(k) = min over n = 1..=8 of least(k - n) + area(those from k - n up to k) * blocks(n) + PRICE * area(all)
+//! least(k) = min over n = 1..=8 of
+//!            least(k - n) + area(references k - n to k) * blocks(n) + PRICE * area(all)
 //! ```
 //!
-//! A wide node above such leaves is nearly as good as what the collapse makes of the curve's binary tree over the same neighbours: rays
-//! take 3 % more steps in the mean over six scenes. There is no such tree to build, to plan or to arrange: 20 ms instead of 28 for
-//! all of a quick build of sponza.
+//! A wide node above such leaves is nearly as good as the collapse of the curve's binary tree
+//! over the same neighbours: rays take 3 % more steps, in the mean over six scenes. There is no
+//! such tree to build, to plan or to arrange, so the build is quicker (measured:
+//! docs/decisions.md, 15).
 
 use super::reference::{PrimRef, bounds};
 use crate::geometry::{Aabb, Scalar, min};
@@ -19,32 +21,40 @@ use crate::simd::{Isa, KernelLanes};
 use crate::tree::{Child, LeafRange};
 use alloc::vec::Vec;
 
-/// What a leaf costs beside its visits, in parts of a visit of all: for the memory.
+/// Cost of a leaf beside its visits, for its memory.
+///
+/// In units of the cost of a visit with the box of the whole row.
 const PRICE: f64 = 0.06;
 
-/// Cuts rows of references into leaves.
+/// Partitions rows of references into leaves.
 pub(super) struct Cutter<S> {
-    /// As for [`Aabb::scaled_half_area`].
+    /// The scale for [`Aabb::scaled_half_area`].
     scale: S,
-    /// At the most.
+    /// Maximum number of leaves in a row.
     max_leaf_ranges: usize,
-    /// What a visit costs, by place in turns of eight, and by the leaf's first place in such turns.
+    /// The cost of a visit to a leaf, by its last and first places modulo 8.
     costs: [[S; LEAF_WIDTH]; LEAF_WIDTH],
 }
 
 impl<S: Scalar> Cutter<S> {
-    /// Into at most so many leaves, with tests of `block_size` at once.
+    /// Makes a cutter for rows of at most `max_leaf_ranges` leaves.
+    ///
+    /// A leaf tests `block_size` references at once.
     pub fn new(max_leaf_ranges: usize, block_size: usize, scale: S) -> Self {
         let cost = |count: usize| S::from_count(count.div_ceil(block_size) as i32);
         let costs = core::array::from_fn(|end| core::array::from_fn(|start| cost(count(start, end))));
         Self { scale, max_leaf_ranges, costs }
     }
 
-    /// Where two rows are best cut: for each place, how many are in the last leaf of the cheapest that end there. Rows are not more
-    /// than so many leaves have room for, and lie in their boxes.
+    /// Partitions two rows into leaves at the least cost.
+    ///
+    /// For each prefix of a row, `last` is the size of the last leaf in the prefix's cheapest
+    /// partition. A row has at most as many references as `max_leaf_ranges` leaves have room for,
+    /// and all are in the row's box.
     pub fn cut(&self, rows: [(&[PrimRef<S>], &Aabb<S>); 2], last: &mut [Vec<u8>; 2]) {
         debug_assert!(rows.iter().all(|(row, _)| row.len() <= self.max_leaf_ranges * LEAF_WIDTH));
-        // Not nothing, so that few leaves are cheaper than many even where all are points.
+        // Above zero, so that few leaves are cheaper than many even where all
+        // references are points.
         let price = |aabb: &Aabb<S>| {
             PRICE * aabb.scaled_half_area(self.scale).to_f64() + f64::from(f32::MIN_POSITIVE)
         };
@@ -55,7 +65,8 @@ impl<S: Scalar> Cutter<S> {
         run(rows.map(|(row, _)| row), prices, last);
         for ((row, _), (mut price, last)) in rows.into_iter().zip(prices.into_iter().zip(last)) {
             while ends(last).count() > self.max_leaf_ranges {
-                // The dearer, the fewer. Where areas overflow no price is high enough: full leaves, then.
+                // A higher price makes fewer leaves. Where areas overflow, no price is high enough:
+                // the leaves are full then.
                 price *= 4.0;
                 if S::from_f64(price) >= S::MAX {
                     last.clear();
@@ -69,7 +80,9 @@ impl<S: Scalar> Cutter<S> {
         }
     }
 
-    /// Appends the leaves of a row that was cut, with slots that are counted from its begin.
+    /// Appends the leaves of a row that was partitioned.
+    ///
+    /// Their slots are counted from the start of the row.
     pub fn append(row: &[PrimRef<S>], last: &[u8], leaf_ranges: &mut Vec<LeafRange<S>>) {
         let start = leaf_ranges.len();
         for end in ends(last) {
@@ -80,18 +93,21 @@ impl<S: Scalar> Cutter<S> {
     }
 }
 
-/// Where leaves end, the last one first.
+/// Returns the ends of the leaves, the last one first.
 fn ends(last: &[u8]) -> impl Iterator<Item = usize> {
     let before = |&end: &usize| end.checked_sub(usize::from(last[end - 1])).filter(|&end| end > 0);
     core::iter::successors(Some(last.len()).filter(|&end| end > 0), before)
 }
 
-/// How many there are in a leaf, by the places of its first and its last in turns of eight.
+/// Returns the size of a leaf, from its first and last places modulo 8.
 fn count(first: usize, last: usize) -> usize {
     (last + LEAF_WIDTH - first) % LEAF_WIDTH + 1
 }
 
-/// Two rows at a time, since each place waits for the one before: a quick build of sponza takes 16.7 ms so, else 17.1.
+/// A kernel that partitions two rows at a time.
+///
+/// Each place of a row waits for the place before, and a second row fills the wait: a quick build
+/// of sponza takes 16.7 ms instead of 17.1 ms.
 struct Cut<'r, S> {
     cutter: &'r Cutter<S>,
     rows: [&'r [PrimRef<S>]; 2],
@@ -99,13 +115,15 @@ struct Cut<'r, S> {
     last: &'r mut [Vec<u8>; 2],
 }
 
-/// What is known of a row's leaves that may end at a place, by where they begin.
+/// The candidates for the leaf that ends at a place of a row.
+///
+/// A candidate's lane is the place where it begins, modulo 8. `mins` and `maxs` are its box.
 struct Ends<S: Scalar, I: Isa> {
     mins: [S::Times8<I>; 3],
     maxs: [S::Times8<I>; 3],
-    /// The least cost of all before the leaf.
+    /// The least cost of all references before the leaf.
     before: S::Times8<I>,
-    /// The least cost of all.
+    /// The least cost of all references so far.
     least: S,
 }
 
@@ -114,7 +132,7 @@ impl<S: Scalar> Kernel for Cut<'_, S> {
     const USES_AVX512: bool = false;
     type Output = ();
 
-    /// A lane for each of the last eight places that a leaf may begin at, in turns.
+    /// Each of the last eight places where a leaf may begin has a lane, in rotation.
     #[inline(always)]
     fn run<I: Isa>(self, isa: I) {
         let splat = |value: S| S::Times8::<I>::splat(isa, value);
@@ -156,7 +174,7 @@ impl<S: Scalar> Kernel for Cut<'_, S> {
                 let four = low.min(high);
                 let lowest = min(min(four.lane(0), four.lane(1)), min(four.lane(2), four.lane(3)));
                 let lane = S::Times8::<I>::bits(costs.le(splat(lowest))).trailing_zeros() as usize;
-                // No more than there are, even where areas overflow.
+                // At most all references so far, even where areas overflow.
                 last.push(count(lane % LEAF_WIDTH, end).min(place + 1) as u8);
                 ends.least = lowest + price;
             }
@@ -178,7 +196,7 @@ mod tests {
     fn lengths(row: &[PrimRef], leaves: usize, block_size: usize) -> Vec<usize> {
         let aabb = bounds(row);
         let mut leaf_ranges = Vec::new();
-        // Beside another row, and without one.
+        // Beside another row, and alone.
         let mut last = [Vec::new(), Vec::new()];
         let cutter = Cutter::new(leaves, block_size, aabb.area_scale());
         cutter.cut([(&row[..row.len() / 2], &aabb), (row, &aabb)], &mut last);
@@ -203,7 +221,7 @@ mod tests {
         assert_eq!(lengths(&row[..1], 16, 8), [1]);
     }
 
-    /// The least of all ways to cut.
+    /// Compares the cost with that of every possible partition.
     #[test]
     fn no_other_cut_is_cheaper() {
         let mut rng = Pcg64Mcg::seed_from_u64(7);
@@ -229,7 +247,7 @@ mod tests {
                     })
                 };
                 let found = cost(&lengths(&row, 16, block_size));
-                // A bit for each place between two.
+                // One bit for each gap between two references.
                 for cuts in 0..1u32 << 9 {
                     let mut all = vec![1];
                     for place in 0..9 {
@@ -255,7 +273,7 @@ mod tests {
         assert_eq!(lengths(&points, 16, 8).len(), 13);
         let huge = PrimRef::new(Aabb::new([-f32::MAX; 3], [f32::MAX; 3]), 0);
         assert!(lengths(&vec![huge; 100], 16, 8).len() <= 16);
-        // Areas that are no number, in a row that fills all leaves.
+        // Areas that are NaN, in a row that fills all leaves.
         let point = |y: f32| PrimRef::new(Aabb::new([0.0, y, 0.0], [0.0, y, 0.0]), 0);
         let mut row = vec![huge; 120];
         row.extend((0..8).map(|k| point(if k == 0 { -f32::MAX } else { f32::MAX })));

@@ -1,13 +1,14 @@
-//! From primitives to a tree: one driver for every heuristic.
+//! Builders: from primitives to a tree, with one driver for every heuristic.
 //!
 //! ```text
-//! primitives -> references (box, index) -> driver, asking the heuristic for splits -> tree -> reinsertion
-//!                                          or for codes along a curve
-//!                                          or for splits above, a curve below
+//! primitives -> references (box, index) -> driver -> tree -> reinsertion
+//!                                          asks the heuristic for splits,
+//!                                          or for codes along a curve,
+//!                                          or for splits above and a curve below
 //! ```
 //!
-//! The driver alone partitions references, bounds the depth and falls back to equal halves, so
-//! that a bad heuristic makes a slow tree, never a broken one.
+//! The driver alone partitions references, bounds the depth and falls back to equal halves. So a
+//! bad heuristic makes a slow tree, never a broken one.
 
 mod buffers;
 mod clusters;

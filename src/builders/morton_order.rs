@@ -1,4 +1,4 @@
-//! References in the order of a curve: keys of their codes and places, sorted.
+//! References in the order of a curve: sorted keys of codes and places.
 
 use super::radix::sort;
 use super::subtree::{Parent, Subtree, TASK_SIZE, task_child};
@@ -11,16 +11,21 @@ use core::ops::Range;
 
 const _: () = assert!(MAX_DEPTH <= u64::BITS as usize);
 
-/// Sorted keys: a code, and behind it the place of its reference, so that no two are equal.
+/// Sorted keys: a code, and in the lower bits the place of its reference.
+///
+/// The place is the position in the list of references, so no two keys are equal.
 pub(super) struct Curve<'m> {
     pub keys: &'m [u64],
-    /// The bits of a key that are the place.
+    /// The mask of the bits that hold the place.
     place: u64,
 }
 
 impl<'m> Curve<'m> {
-    /// Of at least one code. Keys have `bits` at the most: codes lose their lowest if they have too many. Not fewer than
-    /// places take. `spare` is memory for as many, and the keys lie in one of the two.
+    /// Sorts the keys of a list of codes.
+    ///
+    /// Requires at least one code. Keys use at most `bits` bits, which must be enough for a place:
+    /// codes lose their lowest bits if they have too many. `spare` has room for as many keys. The
+    /// sorted keys are in one of the two lists.
     pub fn new(codes: &'m mut [u64], spare: &'m mut [u64], bits: usize) -> Self {
         let place_bits = usize::BITS - (codes.len() - 1).leading_zeros();
         let any = |codes: &[u64]| codes.iter().fold(0, |all, code| all | code);
@@ -37,18 +42,22 @@ impl<'m> Curve<'m> {
         Self { keys, place: (1 << place_bits) - 1 }
     }
 
-    /// The place of a key's reference.
+    /// Returns the place of a key's reference.
     #[inline(always)]
     pub fn place(&self, key: u64) -> usize {
         (key & self.place) as usize
     }
 
-    /// As many keys with the same places, whose tree is one of halves.
+    /// Returns keys with the same places, and consecutive numbers as codes.
+    ///
+    /// The tree over n such keys has a depth of at most ceil(log2(n)).
     pub fn in_a_row(&self, keys: &[u64]) -> Vec<u64> {
         (0..).zip(keys).map(|(row, &key)| row << self.place.count_ones() | key & self.place).collect()
     }
 
-    /// The nodes of more than [`TASK_SIZE`] keys, without their boxes, and the keys of the tasks below them, in order.
+    /// Returns the nodes above the tasks, and the keys of each task, in order.
+    ///
+    /// A node has more than [`TASK_SIZE`] keys; its boxes are not computed yet.
     pub fn divide<S: Scalar>(&self) -> (Subtree<S>, Vec<Range<usize>>) {
         let (mut top, mut tasks) = (Subtree::with_capacity(0, 0), Vec::new());
         let mut open: Vec<(Parent, Range<usize>)> = vec![(None, 0..self.keys.len())];
@@ -67,17 +76,21 @@ impl<'m> Curve<'m> {
     }
 }
 
-/// Where the highest bit changes among two keys or more.
+/// Returns the place where the highest bit changes, among at least two keys.
 pub(super) fn border(keys: &[u64]) -> usize {
     let highest = (keys[0] ^ keys[keys.len() - 1]).ilog2();
     keys.partition_point(|key| key >> highest & 1 == 0)
 }
 
-/// How keys on both sides of a border differ: the greater, the higher the node between them. More than any two at the ends.
+/// Returns the difference of the keys on both sides of a border.
+///
+/// The greater the difference, the higher the node between the keys. At the ends of the list, it
+/// is `u64::MAX`. Keys differ by less: the lowest bit is left out, since the differences at two
+/// borders in a row never begin with the same bit.
 #[inline(always)]
 pub(super) fn difference(keys: &[u64], border: usize) -> u64 {
     match (border, keys.get(border)) {
-        (1.., Some(key)) => key ^ keys[border - 1],
+        (1.., Some(key)) => (key ^ keys[border - 1]) >> 1,
         _ => u64::MAX,
     }
 }

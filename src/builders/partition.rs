@@ -1,4 +1,6 @@
-//! One step of the build: a set of references becomes a leaf or two sets, each with a part of the memory.
+//! One step of a build: a set of references becomes a leaf or two sets.
+//!
+//! Each of the two sets gets a part of the memory.
 
 use super::heuristic::{BuildNode, Heuristic, Own, Proposal, Split};
 use super::reference::{PrimRef, bounds, centroids};
@@ -6,22 +8,24 @@ use super::spatial_split::Cut;
 use crate::geometry::{Aabb, Axis, Scalar};
 use crate::simd::prefetch_ahead;
 
-/// What the driver needs to divide any node.
+/// The rules by which the driver splits every node.
 pub(crate) struct Rules<'h, S: Scalar> {
     pub heuristic: &'h dyn Heuristic<S>,
     pub max_leaf_size: usize,
-    /// Into how many leaves the layout divides one of neighbours along a curve.
+    /// Maximum number of leaf ranges in a leaf; 1 if the layout has none.
+    ///
+    /// A leaf of neighbours along a curve is divided into leaf ranges.
     pub max_leaf_ranges: usize,
     pub block_size: usize,
-    /// [`MAX_DEPTH`](crate::MAX_DEPTH), or less where something goes below.
+    /// [`MAX_DEPTH`](crate::MAX_DEPTH), or less if clusters have subtrees below.
     pub max_depth: usize,
 }
 
-/// A set of references in memory that has room for more.
+/// A set of references, in memory that has room for extra references.
 pub(super) struct Set<'r, S> {
     pub memory: &'r mut [PrimRef<S>],
     pub len: usize,
-    /// The box around them.
+    /// The box around the references.
     pub aabb: Aabb<S>,
     pub depth: usize,
 }
@@ -33,12 +37,15 @@ impl<S> Set<'_, S> {
 }
 
 impl<'r, S: Scalar> Set<'r, S> {
-    /// Divides the set in two, or answers `Err` with itself if it is to be a leaf. `scene` is the box around everything.
+    /// Splits the set in two, or returns it as `Err` if it becomes a leaf.
     ///
-    /// The depth bound is the invariant `depth + ceil(log2(n)) <= max_depth` of every node. It holds at
-    /// the root (at most 2^32 references, 32 <= 48); a proposed split is taken only if it holds for both
-    /// sides; equal halves, which replace it otherwise, keep it, since each is one level deeper and
-    /// has one binary digit less.
+    /// `scene` is the box around the whole scene.
+    ///
+    /// The depth bound is the invariant `depth + ceil(log2(n)) <= max_depth` of every node. It
+    /// holds at the root: there are at most 2^32 references, and 32 <= 48, the smallest
+    /// `max_depth`. A proposed split is taken only if the invariant holds for both sides. Otherwise
+    /// equal halves replace the split. They keep the invariant: each half is one level deeper, and
+    /// its `ceil(log2(n))` is at least one less.
     pub fn divide(self, rules: &Rules<'_, S>, scene: &Aabb<S>) -> Result<[Self; 2], Self> {
         let n = self.len;
         if n < 2 {
@@ -74,7 +81,7 @@ impl<'r, S: Scalar> Set<'r, S> {
                     if left > 0 && !right.is_empty() {
                         return Ok(self.cut(left, &right));
                     }
-                    // All stayed whole, and went to the same side.
+                    // All references stayed whole and went to the same side: undo the split.
                     references[left..].copy_from_slice(&right);
                 }
                 0
@@ -89,7 +96,9 @@ impl<'r, S: Scalar> Set<'r, S> {
         Ok(self.divided(middle, None))
     }
 
-    /// The references before `middle` on one side, the others on the other, with their boxes if they are known.
+    /// Splits the set after the first `middle` references.
+    ///
+    /// `boxes` are the boxes of both sides, if they are known.
     fn divided(self, middle: usize, boxes: Option<[Aabb<S>; 2]>) -> [Self; 2] {
         let n = self.len;
         let border = middle + share(self.memory.len() - n, middle, n);
@@ -99,7 +108,7 @@ impl<'r, S: Scalar> Set<'r, S> {
         self.split_at(border, [middle, n - middle], boxes)
     }
 
-    /// The first `left` references on one side, those in `right` on the other.
+    /// Splits the set into its first `left` references and those in `right`.
     fn cut(self, left: usize, right: &[PrimRef<S>]) -> [Self; 2] {
         let n = left + right.len();
         let border = left + share(self.memory.len() - n, left, n);
@@ -117,22 +126,26 @@ impl<'r, S: Scalar> Set<'r, S> {
     }
 }
 
-/// A side's part of the room for more, by the number of its references.
+/// Returns a side's share of the extra references, by its number of references.
 fn share(extra_references: usize, side: usize, all: usize) -> usize {
     if extra_references == 0 { 0 } else { (extra_references as u128 * side as u128 / all as u128) as usize }
 }
 
-/// The smallest k with 2^k >= n, for n > 0.
+/// Returns the smallest k with 2^k >= n, for n > 0.
 fn ceil_log2(n: usize) -> usize {
     n.next_power_of_two().trailing_zeros() as usize
 }
 
-/// Moves the references on the left to the front, and tells how many they are: any number.
+/// Moves the left side's references to the front; returns their number.
 ///
-/// Lomuto's scheme without a branch: what comes next changes places with the first on the right, and whether it stays
-/// there is added to the border. A branch would be mispredicted at every other reference.
+/// The number may be 0, or that of all references.
 ///
-/// Refused: the boxes of both sides in the same loop, instead of in one of their own (39 ms for 35).
+/// Lomuto's scheme without a branch: each reference is swapped with the first one of the right
+/// side, and the border moves by one if the reference belongs to the left side. A branch would be
+/// mispredicted for every other reference.
+///
+/// Refused: to compute the boxes of both sides in the same loop, in place of a loop of their own
+/// (39 ms instead of 35 ms).
 fn partition<S: Scalar>(references: &mut [PrimRef<S>], is_left: impl Fn(&PrimRef<S>) -> bool) -> usize {
     let mut middle = 0;
     for i in 0..references.len() {
@@ -145,7 +158,9 @@ fn partition<S: Scalar>(references: &mut [PrimRef<S>], is_left: impl Fn(&PrimRef
     middle
 }
 
-/// Moves the `left` references with the smallest centroids to the front, equal ones by index.
+/// Moves the `left` references with the smallest centroids to the front.
+///
+/// Equal centroids are ordered by index. Returns `left`.
 fn select<S: Scalar>(references: &mut [PrimRef<S>], axis: Axis, left: usize) -> usize {
     references.select_nth_unstable_by(left, |a, b| {
         a.middle(axis).total_cmp(&b.middle(axis)).then(a.index.cmp(&b.index))
@@ -168,7 +183,7 @@ mod tests {
             .collect()
     }
 
-    /// Proposes always the same.
+    /// Always proposes the same split.
     struct Always(Split<f32>);
     impl Heuristic<f32> for Always {
         fn split(&self, _: &BuildNode<'_, f32>) -> Split<f32> {
@@ -219,7 +234,7 @@ mod tests {
     #[test]
     fn a_split_that_would_break_the_depth_bound_is_replaced_by_halves() {
         let one = Split::Count { axis: Axis::X, left: 1 };
-        // 99 references need 7 more levels, below depth 57 there are 6 left after this one.
+        // 99 references need 7 more levels. Below depth 57, only 6 levels are left after this one.
         assert_eq!(middle(one, 100, MAX_DEPTH - 8), Some(1));
         assert_eq!(middle(one, 100, MAX_DEPTH - 7), Some(50));
     }

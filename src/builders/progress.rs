@@ -1,24 +1,29 @@
-//! Progress, and what its watcher says.
+//! The progress of a build, and the answers of the progress callback.
 
 use alloc::sync::Arc;
 use core::fmt;
 use core::sync::atomic::{AtomicU8, AtomicUsize, Ordering::Relaxed};
 
-/// How a build goes on: what the watcher of [`Builder::progress`](crate::Builder::progress) answers. A build that was told to
-/// hurry may still be told to stop, but not to be steady again.
+/// How a build continues: the answer of a progress callback.
+///
+/// See [`Builder::progress`](crate::Builder::progress). After `Hurry` the callback may still answer
+/// `Stop`, but a later `Steady` has no effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum BuildControl {
-    /// As it was.
+    /// Continue as before.
     Steady,
-    /// With whatever is done: of what is not divided yet the tree is that of [`Morton`](crate::heuristic::Morton)'s curve,
-    /// and optimisation ends. A valid tree, coarser by what a sorting is coarser than the heuristic.
+    /// Finish quickly, with a coarser tree.
+    ///
+    /// Subtrees that are not begun yet follow the curve of [`Morton`](crate::heuristic::Morton),
+    /// and optimisation ends. The tree is valid. These subtrees are coarser than those of the
+    /// heuristic, as sorting along a curve is coarser than its splits.
     Hurry,
-    /// Not at all: [`BuildError::Stopped`](crate::BuildError::Stopped).
+    /// Stop: the build fails with [`BuildError::Stopped`](crate::BuildError::Stopped).
     Stop,
 }
 
-/// Who is told how far a build is, from 0 to 1.
+/// The progress callback, which is called with the progress, from 0 to 1.
 #[derive(Clone)]
 pub(crate) struct ProgressCallback(pub Arc<dyn Fn(f64) -> BuildControl + Send + Sync>);
 
@@ -28,7 +33,7 @@ impl fmt::Debug for ProgressCallback {
     }
 }
 
-/// How far a build is.
+/// The progress of a build.
 pub(crate) struct Progress<'w> {
     watcher: &'w (dyn Fn(f64) -> BuildControl + Sync),
     total: AtomicUsize,
@@ -47,21 +52,21 @@ impl<'w> Progress<'w> {
         }
     }
 
-    /// There are so many references.
+    /// Sets the number of references of the build.
     pub fn begin(&self, total: usize) {
         self.total.store(total, Relaxed);
     }
 
-    /// `count` more have found their leaves.
+    /// Adds `count` references that have reached their leaves.
     pub fn place(&self, count: usize) {
         self.placed.fetch_add(count, Relaxed);
     }
 
-    /// Tells how far the build is, and asks how it goes on.
+    /// Calls the progress callback, and returns the strictest answer so far.
     pub fn poll(&self) -> BuildControl {
         let pace = match self.pace() {
             BuildControl::Stop => BuildControl::Stop,
-            // More references than primitives may be placed.
+            // With extra references, more may be placed than there are primitives.
             _ => {
                 (self.watcher)((self.placed.load(Relaxed) as f64 / self.total.load(Relaxed) as f64).min(1.0))
             }
@@ -70,7 +75,7 @@ impl<'w> Progress<'w> {
         self.pace()
     }
 
-    /// The strictest answer so far.
+    /// Returns the strictest answer so far.
     fn pace(&self) -> BuildControl {
         match self.pace.load(Relaxed) {
             0 => BuildControl::Steady,

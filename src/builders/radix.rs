@@ -1,30 +1,36 @@
-//! Sorting of codes.
+//! Radix sort of keys.
 
 use crate::parallel;
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Bits in a digit: the places of 2,048 digits fit the first cache.
+/// Bits of a digit: counters for 2,048 digits fit the first-level cache.
 const DIGIT: u32 = 11;
 
-/// Keys are sorted by so many digits at the most.
+/// Maximum number of digits by which a bucket is sorted.
 const DIGITS: u32 = 4;
 
-/// Fewer keys are sorted by comparisons.
+/// Buckets of fewer keys are sorted by comparisons.
 const FEW: usize = 256;
 
-/// So many keys go into a bucket, if they are spread evenly: as many as the second cache holds twice.
+/// Least mean number of keys in a bucket.
+///
+/// The second-level cache holds twice as many keys.
 const BUCKET: usize = 1 << 15;
 
-/// Keys are put into buckets in so many parts.
+/// Number of parts of the keys that are put into buckets at the same time.
 const PARTS: usize = 8;
 
-/// Sorts keys that ascend already as far as they are equal above the bit `low`; there are no bits from `high` on. `spare`
-/// is memory for as many: the sorted keys are in one of the two.
+/// Sorts keys, and returns the one of the two lists that holds them.
 ///
-/// A radix sort: by the highest bits into buckets, and those, at the same time, by four digits from the lowest up. What is equal in
-/// all of them, which is little but in the densest places, is sorted by comparisons. 6 ns a key; by the highest digit into 2,048
-/// buckets, and those by two digits more, it was 8, since small buckets clear more places than they have keys.
+/// Keys that are equal in the bits from `low` up must already ascend, and no key may have bits from
+/// `high` on. `spare` has room for as many keys.
+///
+/// The highest bits put the keys into buckets. The buckets are then sorted at the same time, by up
+/// to four digits from the lowest up. Keys that are equal in all of these bits are sorted by
+/// comparisons: only the densest places have many. The sort takes 6 ns per key. Refused: 2,048
+/// buckets by the highest digit, then two more digits, where small buckets clear more counters than
+/// they have keys (measured: docs/decisions.md, 13).
 pub(super) fn sort<'m>(keys: &'m mut [u64], spare: &'m mut [u64], low: u32, high: u32) -> &'m [u64] {
     let bits = (keys.len() / BUCKET).checked_ilog2().unwrap_or(0).min(DIGIT);
     if bits == 0 {
@@ -46,7 +52,7 @@ pub(super) fn sort<'m>(keys: &'m mut [u64], spare: &'m mut [u64], low: u32, high
     spare
 }
 
-/// Sorts a bucket below the bit `high`.
+/// Sorts a bucket by the bits from `low` to `high`.
 fn sort_bucket(bucket: &mut [u64], spare: &mut [u64], low: u32, high: u32) {
     if bucket.len() < FEW {
         return bucket.sort_unstable();
@@ -68,9 +74,12 @@ fn sort_bucket(bucket: &mut [u64], spare: &mut [u64], low: u32, high: u32) {
     }
 }
 
-/// Copies keys in the order of their `bits` from one up, equal ones in their own; tells how many there are of each.
+/// Copies keys in the order of the `bits` bits from `low` up.
 ///
-/// Parts of the keys at the same time: each has its own places among those of equal keys.
+/// Equal keys keep their order. Returns the number of keys for each value of these bits.
+///
+/// Parts of the keys are copied at the same time: each part has its own places among
+/// those of equal keys.
 fn scatter_in_parts(keys: &[u64], mut sorted: &mut [u64], low: u32, bits: u32) -> Vec<usize> {
     let digit = |key: u64| (key >> low) as usize & ((1 << bits) - 1);
     let parts: Vec<_> = keys.chunks(keys.len().div_ceil(PARTS)).collect();
@@ -100,7 +109,9 @@ fn scatter_in_parts(keys: &[u64], mut sorted: &mut [u64], low: u32, bits: u32) -
     (0..1 << bits).map(|digit| counts.iter().map(|counts| counts[digit]).sum()).collect()
 }
 
-/// Copies keys in the order of the digit above a bit, equal ones in their own.
+/// Copies keys in the order of the digit at the bit `shift`.
+///
+/// Equal keys keep their order.
 fn scatter(keys: &[u64], sorted: &mut [u64], shift: u32) {
     let digit = |key: u64| (key >> shift) as usize & ((1 << DIGIT) - 1);
     let mut places = [0u32; 1 << DIGIT];
@@ -124,7 +135,9 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
-    /// Few, one bucket, and several; codes of many bits and of few, many equal ones among them, above the places.
+    /// Few keys, one bucket and several buckets.
+    ///
+    /// The codes, above the places, have many bits or few, and many codes are equal.
     #[test]
     fn keys_are_sorted_whatever_their_bits() {
         let mut rng = Pcg64Mcg::seed_from_u64(1);

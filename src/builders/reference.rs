@@ -1,12 +1,15 @@
-//! What builders sort instead of primitives.
+//! The references that builders sort in place of primitives.
 
 use crate::geometry::{Aabb, Axis, Scalar};
 use crate::simd::{Backend, Kernel, Lanes};
 use crate::simd::{Isa, KernelLanes};
 
-/// A reference to a primitive: its box and its index. All that builds and heuristics see of it.
-// Aligned, so that it is copied in whole registers: else what partitioning writes in parts of one size it reads back in
-// parts of another, and waits for the cache each time (a third of the build).
+/// A reference to a primitive: its box and its index.
+///
+/// Builders and heuristics see nothing else of a primitive.
+// Aligned, so that a reference is copied in whole registers. Otherwise partitioning reads
+// back parts of other sizes than it has written, and waits for the cache each time (a
+// third of the build).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]
 pub struct PrimRef<S = f32> {
@@ -14,11 +17,11 @@ pub struct PrimRef<S = f32> {
     pub aabb: Aabb<S>,
     /// The primitive's index in the input.
     pub index: u32,
-    /// So that a reference is copied without gaps.
+    /// Explicit padding, so that a reference is copied without gaps.
     padding: u32,
 }
 
-/// What is wrong with a primitive.
+/// The reason why the box of a primitive is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InvalidBox {
@@ -31,34 +34,39 @@ pub enum InvalidBox {
 }
 
 impl<S: Scalar> PrimRef<S> {
-    /// A reference to the primitive with an input index and a box: to try a heuristic by itself.
+    /// Makes a reference to a primitive from its box and its index in the input.
+    ///
+    /// Use it to try a heuristic by itself.
     #[inline(always)]
     pub fn new(aabb: Aabb<S>, index: u32) -> Self {
         Self { aabb, index, padding: 0 }
     }
 
-    /// The box's minimum, with one more of its scalars, and its maximum, with zero: what lies
-    /// behind it, the index, is a subnormal number, with which computing is slow.
+    /// Returns the box's minimum and maximum, each in the first three of four lanes.
+    ///
+    /// The fourth lane of the minimum is another scalar of the box, that of the maximum is zero.
+    /// The index is stored after the maximum: as a floating-point number it is subnormal, and
+    /// arithmetic with subnormal numbers is slow.
     #[inline(always)]
     pub(super) fn corners<I: Isa>(&self, isa: I) -> [S::Times4<I>; 2] {
         let Aabb { min: [a, b, c], max: [x, y, z] } = self.aabb;
         [[a, b, c, x], [x, y, z, S::ZERO]].map(|corner| S::Times4::from_slice(isa, &corner))
     }
 
-    /// The middle of the box: the point that decides on which side of a split the primitive goes.
+    /// Returns the middle of the box, which decides the primitive's side of a split.
     #[inline(always)]
     pub fn centroid(&self) -> [S; 3] {
         self.aabb.center()
     }
 
-    /// One coordinate of the middle.
+    /// Returns one coordinate of the centroid.
     #[inline(always)]
     pub(super) fn middle(&self, axis: Axis) -> S {
         let axis = axis.index();
         self.aabb.min[axis] * S::HALF + self.aabb.max[axis] * S::HALF
     }
 
-    /// What makes the primitive invalid, if anything does.
+    /// Returns the reason why the box is invalid; `None` if it is valid.
     pub(crate) fn invalid_box(&self) -> Option<InvalidBox> {
         let aabb = &self.aabb;
         if aabb.is_valid() {
@@ -75,12 +83,12 @@ impl<S: Scalar> PrimRef<S> {
     }
 }
 
-/// The box around references' centroids.
+/// Returns the box around the centroids of references.
 pub(super) fn centroids<S: Scalar>(references: &[PrimRef<S>]) -> Aabb<S> {
     references.iter().fold(Aabb::EMPTY, |all, reference| all.grow(reference.centroid()))
 }
 
-/// The box around references; [`Aabb::EMPTY`] around none.
+/// Returns the box around references; [`Aabb::EMPTY`] if there are none.
 pub(super) fn bounds<'r, S: Scalar>(references: impl IntoIterator<Item = &'r PrimRef<S>>) -> Aabb<S> {
     Backend::best().run(Bounds(references))
 }
@@ -102,7 +110,7 @@ impl<'r, S: Scalar, R: IntoIterator<Item = &'r PrimRef<S>>> Kernel for Bounds<R>
     }
 }
 
-/// The first three lanes.
+/// Returns the first three lanes.
 #[inline(always)]
 pub(super) fn three<S: Scalar>(lanes: impl Lanes<S>) -> [S; 3] {
     [lanes.lane(0), lanes.lane(1), lanes.lane(2)]

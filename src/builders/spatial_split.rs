@@ -1,27 +1,33 @@
-//! References divided by a plane in space: those that it passes through are cut in two.
+//! Spatial splits: a plane cuts the references that it crosses in two.
 //!
-//! What is cut is a reference's box, never its primitive, whose part in half of the box might need less room. So the
-//! two boxes together are the whole one, to the bit, and that is what keeps answers the naive loop's: a ray that meets
-//! the whole box meets one of the two at the very same entry (the slab test rounds monotonically, and the halves share
-//! the plane), so nothing is culled that the whole box would have let pass. Of a box around a part of the primitive that
-//! could not be said: near a grazing hit, t is off by more than such a box allows for.
+//! Boxes of references are cut, never primitives, although the part of a primitive in half of its
+//! box might need less room. So the two boxes together are the whole box, to the bit. This keeps
+//! the answers those of the naive loop. A ray that meets the whole box meets one of the two
+//! halves at the same entry, because the slab test rounds monotonically and the halves share the
+//! plane. So nothing is culled that would not be culled with the whole box. A box around a part
+//! of the primitive has no such guarantee: near a grazing hit, the error of t is larger than the
+//! margin of such a box.
 
 use super::reference::PrimRef;
 use crate::geometry::{Aabb, Axis, Scalar};
 use alloc::vec::Vec;
 
-/// What a plane makes of references if all that it passes through are cut.
+/// A plane, with the counts and boxes of its sides.
+///
+/// At first, they are the counts and boxes if all references that the plane crosses are cut.
 pub(super) struct Cut<S> {
     axis: Axis,
     position: S,
-    /// References on the two sides.
+    /// The number of references on each side.
     pub counts: [usize; 2],
     boxes: [Aabb<S>; 2],
-    /// Of areas.
+    /// The scale for [`Aabb::scaled_half_area`].
     scale: S,
 }
 
-/// The parts of a box on both sides of a plane, one of them none if the plane does not pass through it.
+/// Returns the parts of a box on both sides of a plane.
+///
+/// One of them is `None` if the plane does not cross the box.
 #[inline(always)]
 pub(super) fn halves<S: Scalar>(aabb: &Aabb<S>, axis: Axis, position: S) -> [Option<Aabb<S>>; 2] {
     let axis = axis.index();
@@ -32,7 +38,7 @@ pub(super) fn halves<S: Scalar>(aabb: &Aabb<S>, axis: Axis, position: S) -> [Opt
         (left.max[axis], right.min[axis]) = (position, position);
         [Some(left), Some(right)]
     } else {
-        // Also if the position is NaN.
+        // The case of a NaN position, too.
         [None, Some(*aabb)]
     }
 }
@@ -52,10 +58,12 @@ impl<S: Scalar> Cut<S> {
         Self { axis, position, counts, boxes, scale: all.area_scale() }
     }
 
-    /// Moves the left side's references to the front, and tells how many they are and which are the right side's.
+    /// Moves the left side's references to the front of the list.
     ///
-    /// A reference that the plane passes through stays whole where that costs less (Stich's unsplitting): one side's box
-    /// grows, and the other side has one less.
+    /// Returns the number of these references, and the references of the right side.
+    ///
+    /// A reference that the plane crosses stays whole where that costs less (Stich's unsplitting):
+    /// the box of one side grows, and the other side has one reference less.
     pub fn carry_out(mut self, references: &mut [PrimRef<S>]) -> (usize, Vec<PrimRef<S>>) {
         let mut right = Vec::with_capacity(self.counts[1]);
         let mut left = 0;
@@ -76,7 +84,7 @@ impl<S: Scalar> Cut<S> {
         (left, right)
     }
 
-    /// Both halves, or the whole box on one side.
+    /// Returns both halves, or the whole box on one side.
     fn parts(&mut self, reference: &PrimRef<S>, halves: [Aabb<S>; 2]) -> [Option<Aabb<S>>; 2] {
         let whole = reference.aabb;
         let [left, right] = self.boxes;
@@ -109,7 +117,7 @@ mod tests {
 
     #[test]
     fn what_the_plane_passes_through_is_on_both_sides_and_nothing_else_is() {
-        // Touching the plane is being beside it.
+        // A box that touches the plane is on one side of it.
         let mut references =
             [reference(0.0, 1.0, 0), reference(1.0, 2.0, 1), reference(-9.0, 9.0, 2), reference(3.0, 4.0, 3)];
         let cut = Cut::new(&references, Axis::X, 1.0);

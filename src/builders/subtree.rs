@@ -1,4 +1,4 @@
-//! Parts of a tree that were built by themselves, and the tree made of them.
+//! Subtrees that were built separately, and the tree that joins them.
 
 use super::buffers::Buffers;
 use crate::geometry::{Aabb, Scalar};
@@ -9,20 +9,21 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// References in a task at the most: small enough to keep threads evenly busy, large enough to
-/// make handing out work free.
+/// Maximum number of references in a task.
+///
+/// Small enough to keep threads evenly busy, large enough to make handing out work free.
 pub(super) const TASK_SIZE: usize = 4096;
 
-/// Nodes with the child that refers to the first of them, and the indices in the slots of their leaves.
+/// A subtree: its nodes, its root and the primitive indices of its leaves.
 pub(super) struct Subtree<S> {
     pub nodes: Vec<Node<S>>,
     pub root: Child,
     pub indices: Vec<u32>,
-    /// Parts of large leaves, in the order of the slots.
+    /// The leaf ranges of large leaves, in the order of the slots.
     pub leaf_ranges: Vec<LeafRange<S>>,
 }
 
-/// A subtree that lies among others.
+/// A subtree that is stored among others.
 #[derive(Clone, Copy)]
 pub(super) struct Piece<'s, S> {
     pub nodes: &'s [Node<S>],
@@ -31,7 +32,7 @@ pub(super) struct Piece<'s, S> {
     pub leaf_ranges: &'s [LeafRange<S>],
 }
 
-/// The inner node and the side that refers to a child; none for the root.
+/// The inner node and the side that refer to a child; `None` for the root.
 pub(super) type Parent = Option<(usize, usize)>;
 
 impl<S: Scalar> Subtree<S> {
@@ -51,12 +52,12 @@ impl<S: Scalar> Subtree<S> {
         }
     }
 
-    /// All of it.
+    /// Returns the whole subtree as a piece.
     pub fn all(&self) -> Piece<'_, S> {
         Piece { nodes: &self.nodes, root: self.root, indices: &self.indices, leaf_ranges: &self.leaf_ranges }
     }
 
-    /// Makes an inner node above children with these boxes, and tells its number.
+    /// Appends an inner node above children with these boxes; returns its number.
     pub fn push(&mut self, parent: Parent, boxes: [Aabb<S>; 2]) -> usize {
         let index = self.nodes.len();
         self.refer(parent, Child::inner(index));
@@ -64,7 +65,7 @@ impl<S: Scalar> Subtree<S> {
         index
     }
 
-    /// Makes a leaf.
+    /// Appends a leaf with these primitive indices.
     pub fn push_leaf(&mut self, parent: Parent, indices: impl Iterator<Item = u32>) {
         let first = self.indices.len();
         self.indices.extend(indices);
@@ -72,25 +73,30 @@ impl<S: Scalar> Subtree<S> {
     }
 }
 
-/// Instead of the number of a node, in the top: the number of a task, counted from the end.
+/// Returns the child that stands for a task in the top.
+///
+/// In place of the number of a node, it has the number of the task, counted down from `u32::MAX`.
 pub(super) fn task_child(task: usize) -> Child {
     Child::inner(u32::MAX as usize - task)
 }
 
-/// The number of the task that stands for a child of the top, if one does.
+/// Returns the number of the task that a child of the top stands for, if any.
 pub(super) fn task_of<S>(child: Child, top: &Subtree<S>) -> Option<usize> {
     let is_task = !child.is_leaf() && child.first as usize >= top.nodes.len();
     is_task.then(|| (u32::MAX - child.first) as usize)
 }
 
-/// The top, which has no leaves, and the subtrees of its tasks as one tree, a left child the node after its parent
-/// everywhere, and slots in the order of the leaves.
+/// Joins the top and the subtrees of its tasks into one tree.
+///
+/// The top has no leaves. In the result, a left child is the node after its parent everywhere, and
+/// slots are in the order of the leaves.
 pub(super) fn join<S: Scalar>(
     mut top: Subtree<S>,
     subtrees: &[Piece<'_, S>],
     buffers: &mut Buffers<S>,
 ) -> Subtree<S> {
-    // Which nodes and slots follow one another, and by how much those of subtrees move.
+    // The lists of nodes, slots and leaf ranges to join, in order. The numbers in the lists of a
+    // subtree grow by the offset beside them.
     let (mut nodes, mut slots) = (Vec::<(Range<usize>, Option<usize>, Move)>::new(), Vec::<&[u32]>::new());
     let mut leaf_ranges = Vec::<(&[LeafRange<S>], Move)>::new();
     let mut end = Move { node: 0, slot: 0 };
@@ -136,7 +142,7 @@ pub(super) fn join<S: Scalar>(
     Subtree { nodes: moved, root: top.root, indices, leaf_ranges }
 }
 
-/// By how much numbers of nodes and of slots grow.
+/// Offsets that are added to the numbers of nodes and of slots.
 #[derive(Clone, Copy)]
 struct Move {
     node: u32,

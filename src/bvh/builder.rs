@@ -1,4 +1,4 @@
-//! The builder: options, then a build.
+//! The builder: it collects the options of a build, and runs the build.
 
 use super::compiled::CompiledBuild;
 use super::error::BuildError;
@@ -20,7 +20,7 @@ use core::marker::PhantomData;
 #[cfg(feature = "std")]
 use std::time::Duration;
 
-/// The options of a build; from [`Bvh::builder`].
+/// The options of a build, made by [`Bvh::builder`].
 ///
 /// ```
 /// use bvhkit::heuristic::Median;
@@ -61,15 +61,15 @@ impl<P: Primitive, L> Builder<P, Quality, L> {
 }
 
 impl<P: Intersect> Bvh<P> {
-    /// Builds with the good defaults: [`Quality::Balanced`], on all threads.
+    /// Builds a hierarchy with good defaults: [`Quality::Balanced`], on all threads.
     ///
     /// # Errors
-    /// As [`Builder::build`].
+    /// The errors of [`Builder::build`].
     pub fn build(primitives: impl IntoIterator<Item = P>) -> Result<Self, BuildError> {
         Self::builder().build(primitives)
     }
 
-    /// Options, then [`build`](Builder::build).
+    /// Returns a builder, whose [`build`](Builder::build) makes the hierarchy.
     pub fn builder() -> Builder<P, Quality>
     where
         Quality: Heuristic<P::Scalar>,
@@ -79,7 +79,9 @@ impl<P: Intersect> Bvh<P> {
 }
 
 impl<S: Scalar> Tree<S> {
-    /// Options for a binary hierarchy over anything with a box, rays or no rays.
+    /// Returns a builder of binary hierarchies over any primitives.
+    ///
+    /// A primitive needs a box, but no ray test.
     ///
     /// ```
     /// use bvhkit::{Aabb, Primitive, Tree};
@@ -102,35 +104,40 @@ impl<S: Scalar> Tree<S> {
 }
 
 impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
-    /// A preset, in place of the heuristic chosen so far.
+    /// Sets a preset, in place of the heuristic chosen so far.
     #[must_use]
     pub fn quality(self, quality: Quality) -> Builder<P, Quality, L> {
         self.heuristic(quality)
     }
 
-    /// One of [`heuristic`](crate::heuristic)'s, or your own, in place of the one chosen so far.
+    /// Sets one of the heuristics in [`heuristic`](crate::heuristic), or your own.
+    ///
+    /// It replaces the heuristic chosen so far.
     #[must_use]
     pub fn heuristic<G: Heuristic<P::Scalar>>(self, heuristic: G) -> Builder<P, G, L> {
         self.map(|_| heuristic)
     }
 
-    /// The same with another heuristic or another layout.
+    /// Returns the same options with another heuristic or another layout.
     fn map<G, M>(self, change: impl FnOnce(H) -> G) -> Builder<P, G, M> {
         Builder { heuristic: change(self.heuristic), options: self.options, result: PhantomData }
     }
 
-    /// The same with an option set.
+    /// Returns the same options with one of them set.
     fn set(mut self, set: impl FnOnce(&mut Options)) -> Self {
         set(&mut self.options);
         self
     }
 
-    /// How the hierarchy lies in memory, in place of the [`WideTree`] of 16: another [`Layout`].
+    /// Sets the [`Layout`] of the hierarchy in memory.
+    ///
+    /// The default is the [`WideTree`] with up to 16 children per node.
     ///
     /// ```
     /// use bvhkit::{Bvh, Sphere, Tree};
     /// let spheres = [Sphere::new([0.0; 3], 1.0), Sphere::new([5.0, 0.0, 0.0], 1.0)];
-    /// let bvh: Bvh<Sphere, Tree> = Bvh::builder().layout::<Tree>().max_leaf_size(1).build(spheres)?;
+    /// let bvh: Bvh<Sphere, Tree> =
+    ///     Bvh::builder().layout::<Tree>().max_leaf_size(1).build(spheres)?;
     /// assert_eq!(bvh.report().inner_nodes, 1);
     /// # Ok::<(), bvhkit::BuildError>(())
     /// ```
@@ -139,60 +146,84 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         self.map(|heuristic| heuristic)
     }
 
-    /// What queries are computed with, [`InstructionSet::best`] unless set: to compare and to test.
+    /// Sets the instruction set of queries, to compare and to test.
+    ///
+    /// The default is [`InstructionSet::best`].
     #[must_use]
     pub fn instruction_set(self, instruction_set: InstructionSet) -> Self {
         self.set(|options| options.instruction_set = Some(instruction_set))
     }
 
-    /// The largest number of primitives in a leaf of the binary tree: unless set, [`LEAF_WIDTH`](crate::LEAF_WIDTH), 8,
-    /// where leaves have so many side by side, else 4; surface area heuristics make smaller ones where that pays. Any
-    /// number from 1 on; above the number of primitives it means that number. A [`WideTree`] joins leaves where that is
-    /// cheaper, and divides larger ones: its own hold up to `LEAF_WIDTH`, whatever is set here. Unless it is set, a
-    /// [cluster](crate::heuristic::Clustered) is one leaf of the binary tree, which a wide tree makes a node of: setting it makes
-    /// quicker trees of clusters, more slowly.
+    /// Sets the maximum number of primitives in a leaf of the binary tree.
+    ///
+    /// Any number from 1 on is valid; the number of primitives is the largest with an effect.
+    /// Surface area heuristics make smaller leaves where that pays. The default is
+    /// [`LEAF_WIDTH`](crate::LEAF_WIDTH), 8, if the leaves of the layout hold so many
+    /// primitives side by side, else 4.
+    ///
+    /// A [`WideTree`] joins leaves where that is cheaper, and divides larger ones. Its own leaves
+    /// hold up to `LEAF_WIDTH` primitives, whatever is set here.
+    ///
+    /// By default, a [cluster](crate::heuristic::Clustered) is one leaf of the binary tree, and
+    /// a wide tree makes a node of it. If a size is set, trees of clusters are quicker to
+    /// trace, and slower to build.
     #[must_use]
     pub fn max_leaf_size(self, max_leaf_size: usize) -> Self {
         self.set(|options| options.max_leaf_size = Some(max_leaf_size))
     }
 
-    /// Builds with a pool of `threads` threads that is started for this build, 0 meaning one for each
-    /// core. Unless set, the build uses rayon's pool that it is called in, which is quicker for many
-    /// small builds. Without the feature `rayon` builds use the
-    /// calling thread. The tree is the same in all cases.
+    /// Sets the number of threads in a pool that is started for this build.
+    ///
+    /// 0 means one thread for each core. By default, the build uses the rayon pool that it is
+    /// called in, which is quicker for many small builds. Without the feature `rayon`, the build
+    /// uses the calling thread. The tree is the same in all cases.
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {
         self.set(|options| options.threads = Some(threads))
     }
 
-    /// Makes the tree better once it is built, whatever the heuristic. Unless set, it is as the heuristic says:
-    /// [presets](Quality) are optimised, others are not; [`Optimise::NONE`] keeps presets from it.
+    /// Sets the reinsertion that improves the tree after the build.
+    ///
+    /// It works for every heuristic. By default, the heuristic decides. Of the [presets](Quality),
+    /// `Balanced` and `High` reinsert; other heuristics of this crate do not. [`Optimise::NONE`]
+    /// switches the reinsertion of a preset off.
     #[must_use]
     pub fn optimise(self, optimise: Optimise) -> Self {
         self.set(|options| options.optimise = Some(optimise))
     }
 
-    /// Tells `watcher` how far the build of the tree is, from 0 to 1, every few thousand primitives at the most and from
-    /// several threads, and goes on as it answers. Optimisation asks on, at 1; the layout, which follows, does not.
+    /// Sets the progress callback, which controls how the build goes on.
+    ///
+    /// The build calls `watcher` with its progress, from 0 to 1, at least once every few thousand
+    /// primitives, from several threads. It goes on as the returned [`BuildControl`] says.
+    /// Optimisation calls `watcher` too, with 1. The layout, which follows, does not.
     ///
     /// ```
     /// use bvhkit::{Bvh, BuildError, BuildControl, Sphere};
-    /// let spheres: Vec<Sphere> = (0..50_000).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)).collect();
-    /// let cancelled = |progress| if progress > 0.5 { BuildControl::Stop } else { BuildControl::Steady };
-    /// assert_eq!(Bvh::builder().progress(cancelled).build(&spheres).unwrap_err(), BuildError::Stopped);
+    /// let spheres: Vec<Sphere> =
+    ///     (0..50_000).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)).collect();
+    /// let cancelled =
+    ///     |progress| if progress > 0.5 { BuildControl::Stop } else { BuildControl::Steady };
+    /// assert_eq!(
+    ///     Bvh::builder().progress(cancelled).build(&spheres).unwrap_err(),
+    ///     BuildError::Stopped
+    /// );
     /// ```
     #[must_use]
     pub fn progress(self, watcher: impl Fn(f64) -> BuildControl + Send + Sync + 'static) -> Self {
         self.set(|options| options.watcher = Some(ProgressCallback(Arc::new(watcher))))
     }
 
-    /// This long after `build` is called it hurries: see [`BuildControl::Hurry`]. A valid tree is always the result, and no less
-    /// time is taken for it than a build with [`Quality::Fast`] takes without its optimisation.
+    /// Sets the time after which the build hurries, counted from the call of `build`.
+    ///
+    /// [`BuildControl::Hurry`] describes the effect. The result is always a valid tree. The
+    /// shortest build takes about as long as one with [`Quality::Fast`], which has no optimisation.
     ///
     /// ```
     /// use bvhkit::{Bvh, Ray, Sphere};
     /// use std::time::Duration;
-    /// let spheres: Vec<Sphere> = (0..50_000).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)).collect();
+    /// let spheres: Vec<Sphere> =
+    ///     (0..50_000).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)).collect();
     /// let bvh = Bvh::builder().time_budget(Duration::ZERO).build(&spheres)?;
     /// assert_eq!(bvh.closest_hit(&Ray::new([7.0, -1.0, 0.0], [0.0, 1.0, 0.0])).unwrap().index, 7);
     /// # Ok::<(), bvhkit::BuildError>(())
@@ -203,30 +234,33 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
         self.set(|options| options.time_budget = Some(budget))
     }
 
-    /// What to do with invalid primitives, [`OnInvalid::Reject`] unless set.
+    /// Sets the treatment of invalid primitives; the default is [`OnInvalid::Reject`].
     #[must_use]
     pub fn on_invalid(self, on_invalid: OnInvalid) -> Self {
         self.set(|options| options.on_invalid = on_invalid)
     }
 
-    /// Builds the hierarchy over a list, an array, `&mesh`, any iterator of primitives, or
-    /// references to them. O(n log n) for the heuristics of this crate but
-    /// [`SweepSah`](crate::heuristic::SweepSah), at most [`MAX_DEPTH`](crate::MAX_DEPTH) times O(n)
-    /// plus what the heuristic itself takes for any.
+    /// Builds the hierarchy over `primitives`.
     ///
-    /// No input at all gives an empty hierarchy, which nothing hits.
+    /// The input is a list, an array, `&mesh`, any iterator of primitives, or references to them.
+    /// Empty input gives an empty hierarchy, which nothing hits.
+    ///
+    /// The time is O(n log n) for the heuristics of this crate, except
+    /// [`SweepSah`](crate::heuristic::SweepSah). For any heuristic, it is at most
+    /// [`MAX_DEPTH`](crate::MAX_DEPTH) times O(n), plus the time of the heuristic itself.
     ///
     /// # Errors
-    /// [`BuildError`], whose messages say what is wrong, where, and what to do.
+    /// [`BuildError`], whose messages name the fault, its place and the remedy.
     pub fn build(self, primitives: impl IntoIterator<Item = P>) -> Result<Bvh<P, L>, BuildError> {
         self.build_in(&mut Workspace::for_one_build(), primitives)
     }
 
-    /// The same hierarchy as [`build`](Self::build) makes, in memory that earlier builds have left behind: see [`Workspace`]. What it
-    /// lies in comes back by [`Bvh::recycle`].
+    /// Builds the same hierarchy as [`build`](Self::build), in memory of earlier builds.
+    ///
+    /// The memory comes from the [`Workspace`]. [`Bvh::recycle`] brings it back.
     ///
     /// # Errors
-    /// As [`build`](Self::build).
+    /// The errors of [`build`](Self::build).
     pub fn build_in(
         self,
         workspace: &mut Workspace<P::Scalar>,
@@ -265,7 +299,7 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     }
 }
 
-/// At most 2^32 - 1 items of an iterator.
+/// Collects at most 2^32 - 1 items of an iterator.
 fn collect<P>(primitives: impl Iterator<Item = P>) -> Result<Vec<P>, BuildError> {
     let limit = u32::MAX as usize;
     let check = |count| if count > limit { Err(BuildError::TooManyPrimitives { count }) } else { Ok(()) };

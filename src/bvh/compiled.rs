@@ -1,4 +1,4 @@
-//! What is compiled in this crate, for `f32` and for `f64`: see `builders::compiled`.
+//! Builds compiled in this crate, for `f32` and `f64`: see `builders::compiled`.
 
 use super::error::BuildError;
 use super::job::{Job, LayOut};
@@ -6,9 +6,9 @@ use super::workspace::Workspace;
 use crate::geometry::Scalar;
 use alloc::vec::Vec;
 
-/// Builds of a scalar.
+/// The build for a scalar.
 pub trait CompiledBuild: Sized {
-    /// Builds a tree and has it laid out; the indices of skipped primitives.
+    /// Builds a tree and lays it out; returns the indices of skipped primitives.
     fn build(
         job: &Job<'_, Self>,
         workspace: &mut Workspace<Self>,

@@ -1,37 +1,43 @@
-//! Why there is no hierarchy.
+//! The errors of a build.
 
 use crate::builders::InvalidBox;
 use crate::parallel::ThreadPoolError;
 use crate::simd::InstructionSet;
 use core::fmt;
 
-/// Why a build failed.
+/// The reason why a build failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// A primitive has a box that is no place in space, and [`OnInvalid::Reject`](crate::OnInvalid::Reject) is in force.
+    /// A primitive has an invalid box.
+    ///
+    /// [`OnInvalid::Reject`](crate::OnInvalid::Reject) is in force.
     InvalidPrimitive {
-        /// Its index in the input.
+        /// The index of the primitive in the input.
         index: usize,
-        /// What is wrong with it.
+        /// The fault of its box.
         flaw: InvalidBox,
     },
-    /// More primitives than 32 bits can number, 2^32 - 1. Found before anything is allocated if the
-    /// input tells its length.
+    /// The input has more primitives than 32 bits can number, 2^32 - 1.
+    ///
+    /// The build finds this before it allocates anything, if the input tells its length.
     TooManyPrimitives {
-        /// How many there are at least.
+        /// A lower bound of the number of primitives.
         count: usize,
     },
     /// `max_leaf_size` is 0.
     ZeroLeafSize,
-    /// The layout needs more memory than its references can tell apart: see [`WideTree`](crate::WideTree) and
-    /// [`CompactTree`](crate::CompactTree).
+    /// The layout needs more memory than its references can address.
+    ///
+    /// See [`WideTree`](crate::WideTree) and [`CompactTree`](crate::CompactTree).
     TooLarge,
-    /// The processor, or this build of the crate, does not have the instruction set asked for.
+    /// The processor, or this build of the crate, lacks the instruction set asked for.
     NoInstructionSet(InstructionSet),
-    /// The watcher said so: see [`Builder::progress`](crate::Builder::progress).
+    /// The progress callback stopped the build.
+    ///
+    /// See [`Builder::progress`](crate::Builder::progress).
     Stopped,
-    /// The threads asked for could not be had.
+    /// The threads asked for could not be started.
     ThreadPool(ThreadPoolError),
 }
 

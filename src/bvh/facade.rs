@@ -14,12 +14,14 @@ use crate::tree::Tree;
 use alloc::vec::Vec;
 use core::fmt;
 
-/// A bounding volume hierarchy over primitives of type `P`, owned (`Bvh<Sphere>`) or borrowed
-/// (`Bvh<&Sphere>`).
+/// A bounding volume hierarchy over primitives of type `P`.
 ///
-/// Every index that goes in or comes out is the primitive's place in the input. Answers do not
-/// depend on the heuristic, the leaf size, the layout, the instruction set or the number of threads: they are, bit for bit, those of
-/// the [`reference`](crate::reference) loop over all primitives.
+/// It owns the primitives (`Bvh<Sphere>`) or borrows them (`Bvh<&Sphere>`). Every index that goes
+/// in or comes out is the primitive's place in the input.
+///
+/// Answers are, bit for bit, those of the [`reference`](crate::reference) loop over all
+/// primitives. They do not depend on the heuristic, the leaf size, the layout, the instruction set
+/// or the number of threads.
 ///
 /// ```
 /// use bvhkit::{Bvh, Ray, Triangle};
@@ -43,7 +45,7 @@ use core::fmt;
 pub struct Bvh<P: Primitive, L: Layout<P> = WideTree<<P as Primitive>::Scalar>> {
     layout: L,
     backend: Backend,
-    /// In the order of the input.
+    /// The primitives, in the order of the input.
     primitives: Vec<P>,
     skipped: Vec<u32>,
 }
@@ -53,28 +55,32 @@ impl<P: Primitive, L: Layout<P>> Bvh<P, L> {
         Self { layout, backend, primitives, skipped }
     }
 
-    /// The number of primitives in the tree; skipped ones are not counted.
+    /// Returns the number of primitives in the tree, without the skipped ones.
     pub fn len(&self) -> usize {
         self.layout.len()
     }
 
-    /// No primitives in the tree: nothing will be hit.
+    /// Returns `true` if the tree has no primitives: then nothing is hit.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The box around all primitives in the tree; [`Aabb::EMPTY`] if there is none.
+    /// Returns the box around all primitives in the tree.
+    ///
+    /// An empty tree has the box [`Aabb::EMPTY`].
     pub fn aabb(&self) -> Aabb<P::Scalar> {
         self.layout.aabb()
     }
 
-    /// The primitive with an input index, a skipped one too; none if the index is too large.
+    /// Returns the primitive with an input index, a skipped one too.
+    ///
+    /// Returns `None` if the index is too large.
     #[inline]
     pub fn get(&self, index: usize) -> Option<&P> {
         self.primitives.get(index)
     }
 
-    /// The primitive that was hit.
+    /// Returns the primitive with an input index, such as that of a hit.
     ///
     /// # Panics
     /// If `index` is not below the number of primitives in the input: see [`get`](Self::get).
@@ -83,53 +89,61 @@ impl<P: Primitive, L: Layout<P>> Bvh<P, L> {
         &self.primitives[index]
     }
 
-    /// The primitives in the order of the input, skipped ones included.
+    /// Returns the primitives in the order of the input, skipped ones included.
     pub fn primitives(&self) -> &[P] {
         &self.primitives
     }
 
-    /// The input indices of the primitives that were skipped as invalid, ascending: see
-    /// [`OnInvalid::Skip`](crate::OnInvalid::Skip).
+    /// Returns the input indices of the primitives that were skipped as invalid.
+    ///
+    /// They are in ascending order. See [`OnInvalid::Skip`](crate::OnInvalid::Skip).
     pub fn skipped(&self) -> &[u32] {
         &self.skipped
     }
 
-    /// Leaves the hierarchy's memory to the next that is [built in](Builder::build_in) the workspace, and gives the primitives
-    /// back, in the order of the input, skipped ones included: to be moved, say, and built again.
+    /// Gives the hierarchy's memory to a workspace, and returns the primitives.
+    ///
+    /// The memory serves the next hierarchy that is [built in](crate::Builder::build_in) the
+    /// workspace. The primitives are in the order of the input, skipped ones included. You may move
+    /// them, for example, and build again.
     pub fn recycle(self, workspace: &mut Workspace<P::Scalar>) -> Vec<P> {
         let tree = self.layout.recycle(&mut workspace.layout);
         workspace.build.reclaim(tree);
         self.primitives
     }
 
-    /// The hierarchy without its primitives, to be compared with another.
+    /// Returns the hierarchy without its primitives, for comparison with another.
     pub fn layout(&self) -> &L {
         &self.layout
     }
 
-    /// What queries are computed with.
+    /// Returns the instruction set of queries.
     pub fn instruction_set(&self) -> InstructionSet {
         self.backend.instruction_set()
     }
 
-    /// The hierarchy's shape and estimated cost.
+    /// Returns the shape and the estimated cost of the hierarchy.
     pub fn report(&self) -> TreeReport {
         TreeReport::new(&self.layout)
     }
 
-    /// Bytes of everything: nodes, leaves, indices, and the primitives themselves (without what they may
-    /// own or refer to elsewhere).
+    /// Returns the number of bytes of everything, primitives included.
+    ///
+    /// That is nodes, leaves, indices, and the primitives themselves, without the memory that they
+    /// own or refer to elsewhere.
     pub fn memory_bytes(&self) -> usize {
         self.layout.bytes()
             + size_of::<P>() * self.primitives.capacity()
             + size_of::<u32>() * self.skipped.capacity()
     }
 
-    /// Checks every invariant that queries rely on, in O(n log n): for tests and for the wary.
+    /// Checks every invariant that queries rely on, in O(n log n).
+    ///
+    /// For tests, and for cautious programs.
     ///
     /// # Errors
-    /// The first invariant found broken. Never for a tree as built, unless a primitive's box
-    /// has changed since.
+    /// The first broken invariant. A tree as built breaks none, unless a
+    /// primitive's box has changed since.
     pub fn check(&self) -> Result<(), InvariantError> {
         let is_skipped = |index: usize| self.skipped.binary_search(&(index as u32)).is_ok();
         let indices = (0..self.primitives.len()).filter(|&index| !is_skipped(index));
@@ -142,27 +156,40 @@ where
     P: Primitive + Corners<Scalar = <P as Primitive>::Scalar>,
     L: Layout<P>,
 {
-    /// The end-point overlap, what the SAH cost does not see (Aila, Karras and Laine, On Quality Metrics of Bounding Volume
-    /// Hierarchies, HPG 2013): a ray that ends on a surface visits all nodes around that point, the surface below them or
-    /// not.
+    /// Returns the end-point overlap (EPO), a cost that the SAH cost does not see.
     ///
-    /// The sum over nodes of their cost times the area of the triangles in their boxes that are not below them, over the
-    /// area of all triangles: the mean cost of such nodes for a point anywhere on the surface. Costs are those of
-    /// [`TreeReport::sah_cost`], 1 for an inner node and for a primitive in a leaf, so both have one unit; the paper
-    /// predicts times by a mean of the two, weighted scene by scene. From 0, where no box has a part of a triangle that is not below it, to
-    /// the sum of all costs. Triangles in the same place count each. A box counts as far as it lies in all those above it, where alone rays
-    /// get to it: in a [`CompactTree`](crate::CompactTree) it may stick out. A part in a face of a box is inside.
+    /// A ray that ends on a surface visits all nodes around the end point, whether or not
+    /// the surface is below them (Aila, Karras and Laine, On Quality Metrics of Bounding
+    /// Volume Hierarchies, HPG 2013).
     ///
-    /// Computed in `f64`, by cutting each triangle with the boxes that it meets: some microseconds a triangle, which is more
-    /// than it took to build, in O(n log n) for small triangles and in O(n^2) for those that meet everything. On all
-    /// threads; the same bits on any number of them.
+    /// The EPO is a sum over nodes, over the area of all triangles. Each node adds its
+    /// cost times the area inside its box of the triangles that are not below it. So the
+    /// EPO is the mean cost of such nodes for a point anywhere on the surface. Costs are
+    /// those of [`TreeReport::sah_cost`]: 1 for an inner node, and 1 for a primitive in a
+    /// leaf. So both measures have one unit. The paper predicts times by a mean of the
+    /// two, weighted scene by scene.
+    ///
+    /// The EPO is 0 where no box has a part of a triangle that is not below it. Its
+    /// maximum is the sum of all costs.
+    ///
+    /// - Triangles in the same place count each.
+    /// - A box counts as far as it is inside all boxes above it: rays reach it only there. In a
+    ///   [`CompactTree`](crate::CompactTree), it may stick out.
+    /// - A part of a triangle in a face of a box is inside the box.
+    ///
+    /// The computation cuts each triangle with the boxes that it meets, in `f64`. It takes
+    /// some microseconds per triangle, more than the build: O(n log n) for small triangles,
+    /// O(n^2) for triangles that meet everything. It runs on all threads, and gives the same
+    /// bits on any number of them.
     ///
     /// ```
     /// use bvhkit::heuristic::{Median, SweepSah};
     /// use bvhkit::{Bvh, Triangle};
     ///
     /// // A floor of large triangles, and small ones all over it.
-    /// let at = |x: f32, y: f32, size: f32| Triangle::new([x, y, 0.0], [x + size, y, 0.0], [x, y + size, size]);
+    /// let at = |x: f32, y: f32, size: f32| {
+    ///     Triangle::new([x, y, 0.0], [x + size, y, 0.0], [x, y + size, size])
+    /// };
     /// let triangles: Vec<Triangle> = (0..1000)
     ///     .map(|i| at((i * i % 97) as f32, (i % 89) as f32, if i % 50 == 0 { 40.0 } else { 0.5 }))
     ///     .collect();
@@ -179,27 +206,33 @@ where
 }
 
 impl<P: Primitive> Bvh<P, Tree<P::Scalar>> {
-    /// Makes the tree better: see [`Tree::optimise`]. On the calling thread's pool.
+    /// Improves the tree by reinsertion, on the pool of the calling thread.
+    ///
+    /// See [`Tree::optimise`].
     pub fn optimise(&mut self, optimise: &Optimise) -> OptimiseStats {
         self.layout.optimise(optimise)
     }
 
-    /// The same hierarchy in another layout.
+    /// Returns the same hierarchy in another layout.
     ///
     /// ```
     /// use bvhkit::heuristic::Median;
     /// use bvhkit::{Bvh, Optimise, Ray, Sphere, Tree};
     ///
-    /// let spheres: Vec<Sphere> = (0..100).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)).collect();
+    /// let spheres: Vec<Sphere> =
+    ///     (0..100).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)).collect();
     /// let mut binary = Bvh::builder().heuristic(Median).layout::<Tree>().build(&spheres)?;
     /// binary.optimise(&Optimise::default());
     /// let wide: Bvh<&Sphere> = binary.into_layout()?;
-    /// assert_eq!(wide.closest_hit(&Ray::new([7.0, -1.0, 0.0], [0.0, 1.0, 0.0])).unwrap().index, 7);
+    /// assert_eq!(
+    ///     wide.closest_hit(&Ray::new([7.0, -1.0, 0.0], [0.0, 1.0, 0.0])).unwrap().index,
+    ///     7
+    /// );
     /// # Ok::<(), bvhkit::BuildError>(())
     /// ```
     ///
     /// # Errors
-    /// [`BuildError::TooLarge`].
+    /// [`BuildError::TooLarge`], if the layout cannot address so much memory.
     pub fn into_layout<L: Layout<P>>(self) -> Result<Bvh<P, L>, BuildError> {
         let Self { layout: mut tree, backend, primitives, skipped } = self;
         let layout =
@@ -209,22 +242,25 @@ impl<P: Primitive> Bvh<P, Tree<P::Scalar>> {
 }
 
 impl<P: Primitive, L: Layout<P>> fmt::Debug for Bvh<P, L> {
-    /// The tree's report; nothing is asked of the primitives.
+    /// Writes the report of the tree; calls no method of the primitives.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Bvh").field("report", &self.report()).finish_non_exhaustive()
     }
 }
 
 impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
-    /// The hit with the smallest t in the ray's interval; of several with equal t, that of the
-    /// primitive with the lowest index. None for an invalid ray: see [`Ray::validate`].
+    /// Returns the hit with the smallest t in the ray's interval.
+    ///
+    /// Of several hits with equal t, it is that of the primitive with the lowest index. An invalid
+    /// ray has no hit: see [`Ray::validate`].
     #[inline]
     pub fn closest_hit(&self, ray: &Ray<P::Scalar>) -> Option<Hit<P::Scalar, P::Payload>> {
         self.layout.closest_hit(self.backend, &self.primitives, ray)
     }
 
-    /// As [`closest_hit`](Self::closest_hit), telling `recorder` of each step:
-    /// [`Counters`](crate::Counters), or your own.
+    /// Returns the [`closest_hit`](Self::closest_hit), and tells `recorder` each step.
+    ///
+    /// The recorder is [`Counters`](crate::Counters), or your own.
     #[inline]
     pub fn closest_hit_with(
         &self,
@@ -239,14 +275,15 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
         hit
     }
 
-    /// Whether anything is hit in the ray's interval: the same as `closest_hit(ray).is_some()`,
-    /// but content with any hit.
+    /// Returns whether the ray hits anything in its interval.
+    ///
+    /// The answer is that of `closest_hit(ray).is_some()`, but the first hit found ends the search.
     #[inline]
     pub fn any_hit(&self, ray: &Ray<P::Scalar>) -> bool {
         self.layout.any_hit(self.backend, &self.primitives, ray)
     }
 
-    /// As [`any_hit`](Self::any_hit), telling `recorder` of each step.
+    /// Returns [`any_hit`](Self::any_hit), and tells `recorder` each step.
     #[inline]
     pub fn any_hit_with(&self, ray: &Ray<P::Scalar>, recorder: &mut impl Recorder) -> bool {
         if !recorder.records() {
@@ -257,13 +294,16 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
         is_hit
     }
 
-    /// [`closest_hit`](Self::closest_hit) of each ray, the same bits, in the place of the same number. If there are more
-    /// rays than places or more places than rays, the others are left alone.
+    /// Writes the [`closest_hit`](Self::closest_hit) of each ray, the same bits.
+    ///
+    /// The answer of `rays[i]` is written to `hits[i]`. If one list is longer than the other, the
+    /// rest of it is left alone.
     ///
     /// ```
     /// use bvhkit::{Bvh, Ray, Sphere};
     /// let bvh = Bvh::build((0..100).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)))?;
-    /// let rays: Vec<Ray> = (0..50).map(|i| Ray::new([2.0 * i as f32, -1.0, 0.0], [0.0, 1.0, 0.0])).collect();
+    /// let rays: Vec<Ray> =
+    ///     (0..50).map(|i| Ray::new([2.0 * i as f32, -1.0, 0.0], [0.0, 1.0, 0.0])).collect();
     /// let mut hits = vec![None; rays.len()];
     /// bvh.closest_hits(&rays, &mut hits);
     /// assert!((0..50).all(|i| hits[i].is_some_and(|hit| hit.index == 2 * i)));
@@ -273,24 +313,30 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
         self.layout.closest_hits(self.backend, &self.primitives, rays, hits);
     }
 
-    /// [`any_hit`](Self::any_hit) of each ray, in the place of the same number; as
-    /// [`closest_hits`](Self::closest_hits).
+    /// Writes [`any_hit`](Self::any_hit) of each ray.
+    ///
+    /// The answer of `rays[i]` is written to `hits[i]`, as by [`closest_hits`](Self::closest_hits).
     pub fn any_hits(&self, rays: &[Ray<P::Scalar>], hits: &mut [bool]) {
         self.layout.any_hits(self.backend, &self.primitives, rays, hits);
     }
 
-    /// What [`closest_hit`](Self::closest_hit) visits for these rays, in all and by
-    /// [mean](Counters::nodes_per_ray): a tree weighed by your own rays.
+    /// Counts the steps of [`closest_hit`](Self::closest_hit) for these rays.
+    ///
+    /// The counters have the totals and the [means](Counters::nodes_per_ray): a measure of
+    /// the tree by your own rays.
     ///
     /// ```
     /// use bvhkit::heuristic::Median;
     /// use bvhkit::{Bvh, Ray, Sphere};
     ///
-    /// let spheres: Vec<Sphere> = (0..1000).map(|i| Sphere::new([(i * i) as f32, 0.0, 0.0], 9.0)).collect();
-    /// let rays: Vec<Ray> = (0..100).map(|i| Ray::new([1e4 * i as f32, 0.0, -20.0], [0.0, 0.0, 1.0])).collect();
+    /// let spheres: Vec<Sphere> =
+    ///     (0..1000).map(|i| Sphere::new([(i * i) as f32, 0.0, 0.0], 9.0)).collect();
+    /// let rays: Vec<Ray> =
+    ///     (0..100).map(|i| Ray::new([1e4 * i as f32, 0.0, -20.0], [0.0, 0.0, 1.0])).collect();
     ///
     /// let steps = Bvh::build(&spheres)?.closest_hit_steps(&rays);
-    /// println!("{:.1} nodes, {:.1} tests per ray", steps.nodes_per_ray(), steps.primitives_per_ray());
+    /// let (nodes, tests) = (steps.nodes_per_ray(), steps.primitives_per_ray());
+    /// println!("{nodes:.1} nodes, {tests:.1} tests per ray");
     /// assert_eq!(steps.rays, 100);
     /// // Rays for both questions, such as a renderer has, are added up.
     /// let mut median = Bvh::builder().heuristic(Median).build(&spheres)?.closest_hit_steps(&rays);
@@ -306,7 +352,7 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
         counters
     }
 
-    /// The same for [`any_hit`](Self::any_hit).
+    /// Counts the steps of [`any_hit`](Self::any_hit) for these rays.
     pub fn any_hit_steps(&self, rays: &[Ray<P::Scalar>]) -> Counters {
         let mut counters = Counters::default();
         for ray in rays {
@@ -315,14 +361,15 @@ impl<P: Intersect, L: Traverse<P>> Bvh<P, L> {
         counters
     }
 
-    /// All hits in the ray's interval by increasing t, those with equal t by index: one for each
-    /// primitive hit, its first. Lazy: only as much of the tree is visited as it takes to be sure
-    /// of the hits asked for.
+    /// Returns all hits in the ray's interval by increasing t, equal ones by index.
+    ///
+    /// Each primitive that is hit has one hit, its first. The iterator is lazy: it visits only as
+    /// much of the tree as the hits asked for require.
     pub fn hits(&self, ray: &Ray<P::Scalar>) -> Hits<'_, P, L> {
         Hits::new(&self.layout, self.backend, &self.primitives, ray, ())
     }
 
-    /// As [`hits`](Self::hits), telling `recorder` of each step.
+    /// Returns the [`hits`](Self::hits), and tells `recorder` each step.
     pub fn hits_with<'a, R: Recorder>(
         &'a self,
         ray: &Ray<P::Scalar>,

@@ -1,5 +1,4 @@
-//! A build without its types: what is done whatever the primitives, the heuristic and the layout
-//! are.
+//! The build itself, independent of the types of primitive, heuristic and layout.
 
 use super::error::BuildError;
 use super::options::{Clock, OnInvalid, Options};
@@ -16,38 +15,42 @@ use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 #[cfg(feature = "std")]
 use std::time::Instant;
 
-/// What the layout asks of the tree.
+/// The requirements of a layout.
 pub struct Needs {
-    /// How many primitives a leaf tests at once.
+    /// The number of primitives that a leaf tests at once.
     pub block_size: usize,
-    /// Into how many leaves it divides a large one.
+    /// The number of leaves into which the layout divides a large leaf of the tree.
     pub leaf_ranges: usize,
-    /// Bytes reserved for each primitive.
+    /// The number of bytes reserved for each primitive.
     pub reserve: usize,
 }
 
-/// A build.
+/// A build: its options and its input.
 pub struct Job<'j, S: Scalar> {
     pub options: &'j Options,
     pub clock: Clock,
     pub heuristic: &'j dyn Heuristic<S>,
     pub needs: Needs,
-    /// How many primitives there are.
+    /// The number of primitives.
     pub count: usize,
-    /// Makes references to primitives from one on, as many as there are places; tells whether all
-    /// are valid.
+    /// Writes references to primitives; returns whether all of them are valid.
+    ///
+    /// The first argument is the index of the first primitive. Each place takes one reference.
     pub refer: &'j Refer<'j, S>,
 }
 
-/// What is done with a tree once it is built. False if it is too large for that.
+/// Lays out a finished tree.
+///
+/// Returns `false` if the tree is too large for the layout.
 pub type LayOut<'l, S> = &'l mut (dyn FnMut(&mut Tree<S>, &mut Buffers) -> bool + Send);
 
-/// See [`Job::refer`].
+/// The type of [`Job::refer`].
 pub type Refer<'j, S> = dyn Fn(usize, &mut Places<'_, PrimRef<S>>) -> bool + Sync + 'j;
 
 impl<S: Scalar> Job<'_, S> {
-    /// Builds the tree and has it laid out, on the threads asked for; the indices of skipped
-    /// primitives.
+    /// Builds the tree and lays it out, on the threads asked for.
+    ///
+    /// Returns the indices of skipped primitives.
     pub fn run(&self, workspace: &mut Workspace<S>, lay_out: LayOut<'_, S>) -> Result<Vec<u32>, BuildError> {
         let mut done = Ok(Vec::new());
         in_pool(self.options.threads, self.count, &mut || done = self.steps(workspace, lay_out))
@@ -82,22 +85,22 @@ impl<S: Scalar> Job<'_, S> {
         if is_laid_out { Ok(skipped) } else { Err(BuildError::TooLarge) }
     }
 
-    /// For references, what the heuristic wants beside them, and what is made of them.
+    /// Makes room for references, the heuristic's additional data, and the layout.
     fn make_room(&self, workspace: &mut Workspace<S>) {
         let (count, size) = (self.count, size_of::<PrimRef<S>>());
         let beside = if self.heuristic.cluster_size() > 1 {
             // Two lists of keys.
             count.saturating_mul(2 * size_of::<u64>())
         } else {
-            // A heuristic that asks for very much gets it when it splits.
+            // No more than the primitives: a heuristic that asks for more gets it when it splits.
             size.saturating_mul(self.heuristic.extra_references(count)).min(size.saturating_mul(count))
         };
-        // Where addresses are short, memory for later may be more than there is.
+        // Where addresses are short, the reserve for the layout may be more memory than there is.
         let later = if size_of::<usize>() >= 8 { self.needs.reserve } else { 0 };
         workspace.make_room(size.saturating_mul(count).saturating_add(beside), later.saturating_mul(count));
     }
 
-    /// Makes references to the valid primitives; the indices of the others.
+    /// Makes references to the valid primitives; returns the indices of skipped ones.
     fn refer(&self, references: &mut Vec<PrimRef<S>>) -> Result<Vec<u32>, BuildError> {
         let is_flawed = AtomicBool::new(false);
         let firsts = (0..self.count).step_by(PART);
@@ -124,7 +127,7 @@ impl<S: Scalar> Job<'_, S> {
         Ok(skipped)
     }
 
-    /// What the watcher says, and the clock.
+    /// Returns the stricter answer of the progress callback and the clock.
     fn pace(&self, progress: f64) -> BuildControl {
         let watcher = self.options.watcher.as_ref();
         let pace = watcher.map_or(BuildControl::Steady, |ProgressCallback(watcher)| watcher(progress));

@@ -1,4 +1,4 @@
-//! The hierarchy that users hold, the options of a build, and what may be wrong with its input.
+//! The hierarchy that users hold, the options of a build, and its errors.
 
 mod builder;
 mod compiled;

@@ -6,18 +6,21 @@ use crate::simd::{Backend, InstructionSet};
 #[cfg(feature = "std")]
 use std::time::{Duration, Instant};
 
-/// What to do with a primitive whose box has a NaN, an infinity, or a minimum above its maximum.
+/// The treatment of primitives with an invalid box.
+///
+/// A box is invalid if it has a NaN, an infinity, or a minimum above its maximum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum OnInvalid {
-    /// Fail with [`BuildError::InvalidPrimitive`], which names the first.
+    /// Fails with [`BuildError::InvalidPrimitive`], which names the first one.
     #[default]
     Reject,
-    /// Leave it out, so that nothing hits it, and list it in [`Bvh::skipped`]. The others keep
-    /// their indices.
+    /// Leaves the primitive out, so that nothing hits it.
+    ///
+    /// [`Bvh::skipped`](crate::Bvh::skipped) lists it. The other primitives keep their indices.
     Skip,
 }
 
-/// What a [`Builder`](super::Builder) was told.
+/// The options that a [`Builder`](super::Builder) has collected.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     pub max_leaf_size: Option<usize>,
@@ -30,14 +33,14 @@ pub struct Options {
     pub instruction_set: Option<InstructionSet>,
 }
 
-/// When a build began.
+/// The deadline of a build, if it has one.
 pub struct Clock {
     #[cfg(feature = "std")]
     pub(super) deadline: Option<Instant>,
 }
 
 impl Options {
-    /// What queries are to be computed with, if all is as it may be.
+    /// Checks the options, and returns the backend of queries.
     pub(crate) fn backend(&self) -> Result<Backend, BuildError> {
         if self.max_leaf_size == Some(0) {
             return Err(BuildError::ZeroLeafSize);
@@ -48,7 +51,7 @@ impl Options {
         }
     }
 
-    /// Now.
+    /// Starts the clock of a build.
     pub fn clock(&self) -> Clock {
         Clock {
             #[cfg(feature = "std")]

@@ -4,32 +4,36 @@ use crate::builders::Optimise;
 use crate::builders::heuristic::{BinnedSah, BuildNode, Heuristic, Own, Proposal, Split};
 use crate::geometry::Scalar;
 
-/// How much time a build may take for how quick a tree: a heuristic, and how much of its tree is reinserted.
+/// A preset: a compromise between build time and the speed of the tree.
 ///
-/// `docs/building.md` has the figures. To choose for yourself:
-/// [`Builder::heuristic`](crate::Builder::heuristic) and
+/// Each preset is a heuristic and an amount of reinsertion. `docs/building.md` has the figures. For
+/// your own choice: [`Builder::heuristic`](crate::Builder::heuristic) and
 /// [`Builder::optimise`](crate::Builder::optimise).
 ///
-/// None of them has [`SweepSah`](crate::heuristic::SweepSah), which tries every split: on six scenes
-/// its trees are 1 to 7 % better than those of 32 bins on four and 2 to 45 % worse on two, where
-/// greedy exactness misleads, and it takes ten times as long as bins. Nor
-/// [`SpatialSah`](crate::heuristic::SpatialSah): in nodes of 16 children its trees, reinserted, are within 10 % of
-/// `High`'s either way.
+/// No preset uses [`SweepSah`](crate::heuristic::SweepSah), which tries every split. It takes ten
+/// times as long as bins, and in some scenes greedy exactness misleads it. Nor does any preset use
+/// [`SpatialSah`](crate::heuristic::SpatialSah): in nodes of 16 children, its reinserted trees are
+/// neither clearly better nor worse than those of `High` (measured: docs/decisions.md, 32).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Quality {
-    /// [`BinnedSah`] of 16 bins down to [clusters](crate::heuristic::Clustered) of up to 128 neighbours, a sorting below.
+    /// [`BinnedSah`] with 16 bins above clusters, without reinsertion.
+    ///
+    /// [Clusters](crate::heuristic::Clustered) have up to 128 neighbours. Inside of them, the
+    /// primitives are only sorted.
     Fast,
-    /// [`BinnedSah`] of 16 bins, up to a hundredth of it reinserted, in 8 rounds.
+    /// [`BinnedSah`] with 16 bins; up to 1 % of the nodes reinserted, in 8 rounds.
     #[default]
     Balanced,
-    /// [`BinnedSah`] of 16 bins, up to a tenth of it reinserted, in 16 rounds: rays take 4 % fewer steps in the mean over
-    /// six scenes, and up to 9 % fewer, for 1.1 to 1.4 times the time. For scenes that are built once and traced for minutes.
+    /// [`BinnedSah`] with 16 bins; up to 10 % of the nodes reinserted, in 16 rounds.
+    ///
+    /// For scenes that are built once and traced for minutes: rays take 4 % fewer steps than with
+    /// `Balanced`, in the mean over six scenes (measured: docs/decisions.md, 32).
     High,
 }
 
 impl Quality {
-    /// How much is reinserted.
+    /// Returns the reinsertion of the preset.
     pub fn optimise(self) -> Optimise {
         match self {
             Self::Fast => Optimise::NONE,

@@ -8,25 +8,31 @@ use alloc::vec::Vec;
 use core::fmt;
 use core::mem::take;
 
-/// Memory that builds leave behind and later ones take: for who builds often, such as each frame.
+/// Memory that builds leave behind and later builds take.
 ///
-/// Memory that is new to a process is handed out by the system page by page, as it is touched, and allocators give large buffers
-/// back as soon as they are freed: from about a million primitives on that is a quarter to a half of a build.
-/// `docs/building.md` has the figures. A workspace keeps what
-/// [`Builder::build_in`](crate::Builder::build_in) takes from it, and what
-/// [`Bvh::recycle`](crate::Bvh::recycle) gives to it of a hierarchy that is no longer needed. Hierarchies are the same with and
-/// without; of any types with the same scalar and any sizes, one after another.
+/// For programs that build often, such as in each frame. The system hands out new memory page by
+/// page, as it is touched, and allocators give large buffers back as soon as they are freed.
+/// From about a million primitives on, this takes a quarter to a half of a build.
+/// `docs/building.md` has the figures.
 ///
-/// A hierarchy takes its own memory with it, and brings it back by `recycle`. It gets none that is more than twice what it needs;
-/// one that is larger than all before takes up to an eighth more than it needs, since it may go on to grow. A workspace holds
-/// about as much as its largest build took, see [`bytes`](Self::bytes), after a build that failed perhaps less. Dropping it
-/// frees that.
+/// A workspace keeps the memory that [`Builder::build_in`](crate::Builder::build_in) takes from
+/// it. It also keeps the memory of hierarchies that are no longer needed, from
+/// [`Bvh::recycle`](crate::Bvh::recycle). Hierarchies are the same with and without a
+/// workspace. One workspace serves hierarchies of any types with the same scalar and of any
+/// sizes, one after another.
+///
+/// A hierarchy takes its own memory with it, and `recycle` brings it back. No hierarchy gets memory
+/// of more than twice the size that it needs. A hierarchy that is larger than all before takes up
+/// to an eighth more than it needs, since the next ones may be larger still. A workspace holds
+/// about as much memory as its largest build took, see [`bytes`](Self::bytes). After a build that
+/// failed, it may hold less. Dropping the workspace frees the memory.
 ///
 /// ```
 /// use bvhkit::{Bvh, Quality, Ray, Sphere, Workspace};
 ///
 /// let mut workspace = Workspace::new();
-/// let mut spheres: Vec<Sphere> = (0..1000).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.35)).collect();
+/// let mut spheres: Vec<Sphere> =
+///     (0..1000).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.35)).collect();
 /// for frame in 0..3 {
 ///     let bvh = Bvh::builder().quality(Quality::Fast).build_in(&mut workspace, spheres)?;
 ///     let up = Ray::new([7.0, -1.0, 0.0], [0.0, 1.0, 0.0]);
@@ -40,7 +46,9 @@ use core::mem::take;
 pub struct Workspace<S: Scalar = f32> {
     pub(crate) build: builders::Buffers<S>,
     pub(crate) layout: layout::Buffers,
-    /// For another build; else they are freed as soon as they are not needed.
+    /// Whether the buffers are kept for another build.
+    ///
+    /// If not, they are freed as soon as they are not needed.
     pub(super) is_kept: bool,
 }
 
@@ -57,34 +65,41 @@ impl<S: Scalar> fmt::Debug for Workspace<S> {
 }
 
 impl<S: Scalar> Workspace<S> {
-    /// Without memory yet.
+    /// Creates a workspace without memory.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Of a build that leaves nothing behind, and frees what it does not need any more.
+    /// Creates the workspace of a build that leaves nothing behind.
+    ///
+    /// The build frees memory as soon as it does not need it any more.
     pub(super) fn for_one_build() -> Self {
         Self { build: builders::Buffers::default(), layout: layout::Buffers::default(), is_kept: false }
     }
 
-    /// Makes room for references, in bytes; for `later` bytes in memory that is made for them, where blocks will follow them.
+    /// Makes room for `bytes` bytes of references.
+    ///
+    /// New memory has at least `later` bytes, since nodes and leaves follow the references in it.
     pub(super) fn make_room(&mut self, bytes: usize, later: usize) {
-        // What a build that failed has left.
+        // A build that failed has left its references.
         self.hand_over();
         let len = |bytes: usize| bytes.div_ceil(size_of::<PrimRef<S>>());
         let kept: Vec<PrimRef<S>> = recast(self.layout.take_words());
         let is_enough = kept.capacity() > 0 && kept.capacity() >= len(bytes);
-        // Blocks that take much less than references do have memory of their own.
+        // If `later` is 0, nodes and leaves take much less than references,
+        // and get their own memory.
         self.layout.keeps_rest = is_enough || (self.is_kept && later == 0);
         self.build.references = if is_enough { kept } else { Vec::with_capacity(len(bytes.max(later))) };
     }
 
-    /// References are not needed any more: what they lie in is memory for optimisation, collapse and blocks.
+    /// Hands the memory of the references over, since they are not needed any more.
+    ///
+    /// Optimisation, collapse, nodes and leaves use it.
     pub(super) fn hand_over(&mut self) {
         self.layout.keep_words(recast(take(&mut self.build.references)));
     }
 
-    /// Bytes of memory that it keeps.
+    /// Returns the number of bytes of memory that the workspace keeps.
     pub fn bytes(&self) -> usize {
         self.build.bytes() + self.layout.bytes()
     }

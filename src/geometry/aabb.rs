@@ -20,23 +20,28 @@ pub struct Aabb<S = f32> {
 }
 
 impl<S: Scalar> Aabb<S> {
-    /// The box that holds no point: union with it changes nothing.
+    /// The box that holds no point: a union with it changes nothing.
     pub const EMPTY: Self = Self { min: [S::INFINITY; 3], max: [S::NEG_INFINITY; 3] };
 
-    /// The box from `min` to `max`. Empty if `min` exceeds `max` on any axis.
+    /// Creates the box from `min` to `max`.
+    ///
+    /// The box is empty if `min` exceeds `max` on any axis.
     #[inline(always)]
     pub fn new(min: impl Into<[S; 3]>, max: impl Into<[S; 3]>) -> Self {
         Self { min: min.into(), max: max.into() }
     }
 
-    /// The smallest box around `points`; not valid if a coordinate is NaN or infinite.
+    /// Returns the smallest box around `points`.
+    ///
+    /// The box is not valid if a coordinate is NaN or infinite.
     #[inline(always)]
     pub fn of_points(points: impl IntoIterator<Item = [S; 3]>) -> Self {
         points.into_iter().fold(Self::EMPTY, Self::grow)
     }
 
-    /// This box, enlarged to hold `point`. A NaN, once in, stays: it must not go unnoticed in a
-    /// primitive.
+    /// Returns this box, enlarged to hold `point`.
+    ///
+    /// A bound that is NaN stays NaN, so that a NaN in a primitive does not go unnoticed.
     #[inline(always)]
     #[must_use]
     pub fn grow(self, point: [S; 3]) -> Self {
@@ -52,7 +57,7 @@ impl<S: Scalar> Aabb<S> {
         grown
     }
 
-    /// The smallest box around both. A NaN bound of `other` is ignored.
+    /// Returns the smallest box around both. A NaN bound of `other` is ignored.
     #[inline(always)]
     #[must_use]
     pub fn union(self, other: Self) -> Self {
@@ -61,7 +66,7 @@ impl<S: Scalar> Aabb<S> {
         Self { min: [min(bx, ax), min(by, ay), min(bz, az)], max: [max(dx, cx), max(dy, cy), max(dz, cz)] }
     }
 
-    /// What is inside of both; empty if nothing is.
+    /// Returns the part that is inside both boxes; empty if there is none.
     #[inline]
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
@@ -70,23 +75,23 @@ impl<S: Scalar> Aabb<S> {
         Self { min: [max(bx, ax), max(by, ay), max(bz, az)], max: [min(dx, cx), min(dy, cy), min(dz, cz)] }
     }
 
-    /// What of this box is inside of `other`, or all of it if nothing is.
+    /// Returns the part of this box inside `other`, or this box if there is none.
     #[inline]
     pub(crate) fn within(self, other: Self) -> Self {
         let inside = self.intersection(other);
         if inside.is_empty() { self } else { inside }
     }
 
-    /// Holds no point.
+    /// Returns whether the box holds no point.
     #[inline]
     pub fn is_empty(&self) -> bool {
         (0..3).any(|a| self.min[a] > self.max[a])
     }
 
-    /// Every bound is a number, none infinite, and no minimum exceeds its maximum.
+    /// Returns whether all bounds are finite and no minimum exceeds its maximum.
     #[inline]
     pub fn is_valid(&self) -> bool {
-        // All comparisons at once: a branch for each takes longer. A NaN is not in order with anything.
+        // All comparisons at once: a branch for each takes longer. Comparisons with NaN are false.
         let in_order = |axis: usize| {
             (S::NEG_INFINITY < self.min[axis])
                 & (self.min[axis] <= self.max[axis])
@@ -95,29 +100,33 @@ impl<S: Scalar> Aabb<S> {
         in_order(0) & in_order(1) & in_order(2)
     }
 
-    /// Whether `other` lies inside this box, touching allowed. An empty box lies in every box.
+    /// Returns whether `other` is inside this box. They may touch.
+    ///
+    /// An empty box is inside every box.
     #[inline]
     pub fn contains(&self, other: &Self) -> bool {
         other.is_empty() || (0..3).all(|a| self.min[a] <= other.min[a] && other.max[a] <= self.max[a])
     }
 
-    /// The middle, rounded; finite for every valid box.
+    /// Returns the middle of the box, rounded; finite for every valid box.
     #[inline(always)]
     pub fn center(&self) -> [S; 3] {
         let ([ax, ay, az], [bx, by, bz]) = (self.min, self.max);
-        // Halved before the sum: the sum of two large bounds may overflow.
+        // Halves are added: the sum of two large bounds may overflow.
         let middle = |a: S, b: S| a * S::HALF + b * S::HALF;
         [middle(ax, bx), middle(ay, by), middle(az, bz)]
     }
 
-    /// The size along each axis; infinite where it overflows, negative for an empty box.
+    /// Returns the size along each axis.
+    ///
+    /// The size is infinite where it overflows, and negative where `min` exceeds `max`.
     #[inline(always)]
     pub fn extent(&self) -> [S; 3] {
         let ([ax, ay, az], [bx, by, bz]) = (self.min, self.max);
         [bx - ax, by - ay, bz - az]
     }
 
-    /// The axis along which the box is largest; the first of equals.
+    /// Returns the axis along which the box is largest; the first of equal ones.
     #[inline]
     pub fn longest_axis(&self) -> Axis {
         let [x, y, z] = self.extent();
@@ -130,18 +139,22 @@ impl<S: Scalar> Aabb<S> {
         }
     }
 
-    /// Half the surface area, in units of length squared; 0 for an empty box.
+    /// Returns half the surface area, in units of length squared.
     ///
-    /// Overflows to infinity or underflows to zero at the extremes of the scalar's range:
+    /// A negative extent counts as 0, so the area of [`EMPTY`](Self::EMPTY) is 0.
+    ///
+    /// The area overflows to infinity or underflows to zero at the extremes of the scalar's range:
     /// [`scaled_half_area`](Self::scaled_half_area) compares boxes there.
     #[inline(always)]
     pub fn half_area(&self) -> S {
         self.scaled_half_area(S::ONE)
     }
 
-    /// Half the surface area of the box with its extents multiplied by `scale`; 0 for an empty box.
+    /// Returns half the surface area, with the extents multiplied by `scale`.
     ///
-    /// With `scale` = 1 / (the largest extent of a box around all boxes to be compared), areas
+    /// A negative extent counts as 0, so the area of [`EMPTY`](Self::EMPTY) is 0.
+    ///
+    /// Let `scale` be 1 / (the largest extent of a box around all boxes to be compared). Then areas
     /// neither overflow nor vanish together, whatever the unit of length.
     #[inline(always)]
     pub fn scaled_half_area(&self, scale: S) -> S {
@@ -150,7 +163,9 @@ impl<S: Scalar> Aabb<S> {
         x * y + y * z + z * x
     }
 
-    /// By axis, how many of `count` equal slices lie in a unit of length; 0 where there is no extent.
+    /// Returns how many of `count` equal slices fit into a unit of length, by axis.
+    ///
+    /// The number is 0 on an axis without extent, where the quotient is not finite.
     #[inline(always)]
     pub(crate) fn per_unit(&self, count: usize) -> [S; 3] {
         let count = S::from_count(count as i32);
@@ -160,7 +175,10 @@ impl<S: Scalar> Aabb<S> {
         [finite(x), finite(y), finite(z)]
     }
 
-    /// 1 / (the largest extent), for [`scaled_half_area`](Self::scaled_half_area); 1 for a point.
+    /// Returns the scale by which areas inside this box are compared.
+    ///
+    /// This is the scale for [`scaled_half_area`](Self::scaled_half_area): 1 / (the largest
+    /// extent), or 1 if that is zero or not finite, as for a point.
     #[inline]
     pub(crate) fn area_scale(&self) -> S {
         let largest = self.extent()[self.longest_axis().index()];
@@ -170,7 +188,7 @@ impl<S: Scalar> Aabb<S> {
 }
 
 impl<S: Scalar> Default for Aabb<S> {
-    /// [`Aabb::EMPTY`].
+    /// Returns [`Aabb::EMPTY`].
     fn default() -> Self {
         Self::EMPTY
     }

@@ -1,21 +1,21 @@
 //! The three coordinate axes.
 
-/// A coordinate axis. Converts to its index, 0 to 2.
+/// A coordinate axis, with an index from 0 to 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Axis {
-    /// The first.
+    /// The first axis.
     X,
-    /// The second.
+    /// The second axis.
     Y,
-    /// The third.
+    /// The third axis.
     Z,
 }
 
 impl Axis {
-    /// X, Y, Z.
+    /// The axes X, Y and Z, in this order.
     pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
-    /// 0, 1 or 2.
+    /// Returns the index of the axis: 0, 1 or 2.
     #[inline(always)]
     pub const fn index(self) -> usize {
         self as usize

@@ -1,4 +1,4 @@
-//! Scalars, boxes and rays: the vocabulary that everything above is written in.
+//! Scalars, boxes and rays: the vocabulary of all other modules.
 
 mod aabb;
 mod axis;

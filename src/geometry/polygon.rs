@@ -1,18 +1,18 @@
-//! A flat convex polygon, cut down by boxes.
+//! A flat convex polygon that boxes clip.
 
 use super::{Aabb, Scalar, cross, dot};
 use alloc::vec::Vec;
 use core::mem::swap;
 
-/// x, y and z.
+/// The coordinates x, y and z.
 type Point = [f64; 3];
 
-/// Its corners in turn; none if nothing is left of it.
+/// A flat convex polygon: its corners in order, none if the polygon is empty.
 #[derive(Clone, Debug)]
 pub(crate) struct Polygon {
     corners: Vec<Point>,
     aabb: Aabb<f64>,
-    /// The corners before the last cut: memory to be used again.
+    /// The corners before the last cut, kept to reuse their memory.
     before: Vec<Point>,
 }
 
@@ -29,7 +29,9 @@ impl Polygon {
         self.bound();
     }
 
-    /// Becomes the part of another that lies in a box, whose faces are inside (Sutherland and Hodgman 1974).
+    /// Becomes the part of `whole` inside a box, whose faces count as inside.
+    ///
+    /// The algorithm is that of Sutherland and Hodgman (1974).
     pub fn set_to_part(&mut self, whole: &Self, within: &Aabb<f64>) {
         self.corners.clear();
         if !whole.aabb.intersection(*within).is_empty() {
@@ -46,7 +48,7 @@ impl Polygon {
         self.bound();
     }
 
-    /// Leaves what is above a plane across an axis, or, if `up` is -1, below.
+    /// Keeps the part above a plane across an axis, or below it if `up` is -1.
     fn cut(&mut self, axis: usize, plane: f64, up: f64) {
         swap(&mut self.corners, &mut self.before);
         self.corners.clear();
@@ -58,7 +60,8 @@ impl Polygon {
                 let part = start / (start - end);
                 let between = |axis: usize| from[axis] + (to[axis] - from[axis]) * part;
                 let mut crossing = [between(0), between(1), between(2)];
-                // On the plane to the bit, so that the boxes below, with the same face, do not cut again.
+                // Exactly on the plane, so that boxes below in the tree, with the same face,
+                // do not cut again.
                 crossing[axis] = plane;
                 self.corners.push(crossing);
             }
@@ -88,7 +91,9 @@ impl Polygon {
 mod tests {
     use super::*;
 
-    /// The area of what a box leaves of the triangle (0, 0), (4, 0), (0, 4) at z = 1.
+    /// Returns the area of the part of a triangle that is inside a box.
+    ///
+    /// The corners of the triangle are (0, 0), (4, 0) and (0, 4) at z = 1.
     fn left(min: [f64; 3], max: [f64; 3]) -> f64 {
         let (mut whole, mut part) = (Polygon::EMPTY, Polygon::EMPTY);
         whole.set(&[[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]]);

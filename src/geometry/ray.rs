@@ -1,13 +1,14 @@
-//! The ray: an origin, a direction, and the interval of t that counts.
+//! The ray: an origin, a direction and an interval of t.
 
 use super::{Scalar, min};
 use core::fmt;
 
-/// The points `origin + t * direction` with t in the closed interval [`t_min`, `t_max`].
+/// The points `origin + t * direction` with t in the interval [`t_min`, `t_max`].
 ///
-/// The direction need not be normalised: t is in units of its length. A component so small that its
-/// reciprocal overflows (2.9e-39 for f32, 5.6e-309 for f64) counts as zero where boxes are met; scale
-/// such a direction up. An invalid ray (see [`validate`](Self::validate)) hits nothing.
+/// The interval is closed. The direction need not be normalised: t is in units of its length. A
+/// component so small that its reciprocal overflows (2.9e-39 for `f32`, 5.6e-309 for `f64`) counts
+/// as zero in box tests; scale such a direction up. An invalid ray (see
+/// [`validate`](Self::validate)) hits nothing.
 ///
 /// ```
 /// use bvhkit::{Ray, RayError};
@@ -18,17 +19,17 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Ray<S = f32> {
-    /// Where t = 0.
+    /// The point where t = 0.
     pub origin: [S; 3],
-    /// What one unit of t adds to the point.
+    /// The vector that one unit of t adds to the point.
     pub direction: [S; 3],
-    /// The smallest t that counts, 0 unless set.
+    /// The smallest t in the interval, 0 unless set.
     pub t_min: S,
-    /// The largest t that counts, infinity unless set.
+    /// The largest t in the interval, infinity unless set.
     pub t_max: S,
 }
 
-/// Why a ray hits nothing, whatever the scene.
+/// The reason why a ray hits nothing, whatever the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RayError {
@@ -58,33 +59,39 @@ impl fmt::Display for RayError {
 impl core::error::Error for RayError {}
 
 impl<S: Scalar> Ray<S> {
-    /// The ray from `origin` along `direction`, with t in [0, infinity].
+    /// Creates the ray from `origin` along `direction`, with t in [0, infinity].
     #[inline(always)]
     pub fn new(origin: impl Into<[S; 3]>, direction: impl Into<[S; 3]>) -> Self {
         Self { origin: origin.into(), direction: direction.into(), t_min: S::ZERO, t_max: S::INFINITY }
     }
 
-    /// The same ray with t in the closed interval [`t_min`, `t_max`]. Infinite ends are allowed.
+    /// Returns the same ray with t in the closed interval [`t_min`, `t_max`].
+    ///
+    /// Infinite ends are allowed.
     #[inline(always)]
     #[must_use]
     pub fn with_interval(self, t_min: S, t_max: S) -> Self {
         Self { t_min, t_max, ..self }
     }
 
-    /// The point at `t`, rounded.
+    /// Returns the point at `t`, rounded.
     #[inline(always)]
     pub fn at(&self, t: S) -> [S; 3] {
         let ([ox, oy, oz], [dx, dy, dz]) = (self.origin, self.direction);
         [ox + dx * t, oy + dy * t, oz + dz * t]
     }
 
-    /// Whether `t` lies in the ray's interval; false for NaN.
+    /// Returns whether `t` is in the ray's interval; false for NaN.
     #[inline(always)]
     pub fn includes(&self, t: S) -> bool {
         t >= self.t_min && t <= self.t_max
     }
 
-    /// What makes this ray hit nothing, if anything does.
+    /// Checks that the ray is valid. An invalid ray hits nothing.
+    ///
+    /// # Errors
+    ///
+    /// Returns the reason why the ray hits nothing.
     pub fn validate(&self) -> Result<(), RayError> {
         if !self.origin.iter().all(|x| x.is_finite()) {
             return Err(RayError::Origin);
@@ -95,11 +102,11 @@ impl<S: Scalar> Ray<S> {
         if self.direction.iter().all(|&x| x == S::ZERO) {
             return Err(RayError::ZeroDirection);
         }
-        // False for NaN too.
+        // The comparison is false for NaN, too.
         if self.t_min <= self.t_max { Ok(()) } else { Err(RayError::Interval) }
     }
 
-    /// The same question as [`validate`](Self::validate), answered at once for most.
+    /// Returns whether [`validate`](Self::validate) succeeds, quickly for most rays.
     #[inline(always)]
     pub(crate) fn is_valid(&self) -> bool {
         #[cold]
@@ -110,14 +117,17 @@ impl<S: Scalar> Ray<S> {
         self.is_ordinary() || of_others(self)
     }
 
-    /// Whether nothing about the ray is special, as for most: it is valid, looks ahead of its origin and nowhere else,
-    /// its direction has no component zero or so small, or large, that the inverse would not be of full precision, and
-    /// its coordinates are below `Scalar::LARGE_AREA`. One question without branches in place of several.
+    /// Returns whether the ray is valid and nothing about it is special.
+    ///
+    /// Most rays are ordinary. An ordinary ray looks only ahead of its origin. No component of its
+    /// direction is zero, or so small or large that the inverse loses precision. Its coordinates
+    /// are below `Scalar::LARGE_AREA`. This is one test without branches in place of several.
     #[inline(always)]
     pub(crate) fn is_ordinary(&self) -> bool {
         let ([ox, oy, oz], [dx, dy, dz]) = (self.origin, self.direction);
         let ([ox, oy, oz], [dx, dy, dz]) = ([ox.abs(), oy.abs(), oz.abs()], [dx.abs(), dy.abs(), dz.abs()]);
-        // Sums are NaN if a part is; then the minimum does not count.
+        // A sum is NaN if one of its terms is. Then it does not matter that the minimum
+        // may drop the NaN.
         (ox + oy + oz < S::LARGE_AREA)
             & (dx + dy + dz < S::LARGE_AREA)
             & (min(min(dx, dy), dz) > S::ONE / S::LARGE_AREA)
@@ -154,7 +164,7 @@ mod tests {
         }
     }
 
-    /// One scalar after another is replaced in an ordinary ray.
+    /// Replaces one scalar after another in an ordinary ray.
     #[test]
     fn what_is_ordinary_is_valid_and_has_what_is_said_of_it() {
         let values = [f32::NAN, f32::INFINITY, 1e38, 1.2e18, 1.1e18, 1.0, 8.7e-19, 8.6e-19, 1e-39, 0.0];

@@ -1,28 +1,32 @@
-//! The frame of a ray: what a point looks like from behind the ray.
+//! The frame of a ray: coordinates in which the ray is the third axis.
 
 use super::{Axis, Ray, Scalar};
 
-/// The frame in which a ray starts at the origin and runs along the third axis: a shift, a permutation
-/// of the axes and a shear (Woop, Benthin and Wald, Watertight Ray/Triangle Intersection, JCGT 2013).
-/// No rotation, so a point's coordinates take but a few roundings.
+/// The frame in which a ray starts at the origin and runs along the third axis.
+///
+/// The frame is a shift, a permutation of the axes and a shear (Woop, Benthin and Wald,
+/// Watertight Ray/Triangle Intersection, JCGT 2013). It has no rotation, so a point's coordinates
+/// take only a few roundings.
 ///
 /// The axis on which the direction is largest becomes the third. The paper divides by the direction
-/// there; here the other two coordinates are multiplied by it instead, and are that much larger: of
-/// small whole numbers, and in `f64` of most `f32`, nothing is rounded then, and an edge is met exactly.
+/// on that axis. Here the other two coordinates are multiplied by it instead, and are that much
+/// larger. Then nothing is rounded for small whole numbers, and in `f64` for most `f32` numbers, so
+/// an edge is met exactly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayFrame<S> {
-    /// On the axes below.
+    /// The origin of the ray, in the order of `axes`.
     pub origin: [S; 3],
-    /// Which axes of space become the first, the second and the third.
+    /// The axes of space that become the first, the second and the third.
     pub axes: [Axis; 3],
-    /// The direction on these axes, scaled by a power of two to about 1, so that products with it
-    /// neither overflow nor underflow.
+    /// The direction in the order of `axes`, scaled by a power of two to about 1.
+    ///
+    /// Products with the scaled direction neither overflow nor underflow.
     pub direction: [S; 3],
-    /// The direction on the third, unscaled.
+    /// The unscaled direction on the third axis.
     pub forward: S,
 }
 
-/// The order of the axes that ends with each.
+/// For each axis, the order of the axes that ends with it.
 const ORDERS: [[Axis; 3]; 3] =
     [[Axis::Y, Axis::Z, Axis::X], [Axis::Z, Axis::X, Axis::Y], [Axis::X, Axis::Y, Axis::Z]];
 
@@ -32,7 +36,7 @@ impl<S: Scalar> RayFrame<S> {
         Self::new(&ray.origin, &ray.direction)
     }
 
-    /// The frame of the same ray in the wide scalar.
+    /// Returns the frame of the same ray in the wide scalar.
     #[inline(always)]
     pub fn widened(ray: &Ray<S>) -> RayFrame<S::Wide> {
         let widen = |[x, y, z]: &[S; 3]| [x.widen(), y.widen(), z.widen()];
@@ -42,9 +46,9 @@ impl<S: Scalar> RayFrame<S> {
     #[inline(always)]
     pub fn new(origin: &[S; 3], direction: &[S; 3]) -> Self {
         let [x, y, z] = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
-        // Without a branch: which axis it is cannot be foretold.
+        // Without a branch: the processor cannot predict which axis is largest.
         let (is_x, is_y) = ((x >= y) & (x >= z), y >= z);
-        // The other two in either order: both sides of a triangle are hit.
+        // The other two axes in either order: both sides of a triangle are hit.
         let axes = ORDERS[usize::from(!is_x) * (2 - usize::from(is_y))];
         let (i, j, k) = (axes[0].index(), axes[1].index(), axes[2].index());
         let forward = direction[k];
@@ -57,10 +61,10 @@ impl<S: Scalar> RayFrame<S> {
         }
     }
 
-    /// Three points in the ray's frame: their first, second and third coordinates.
+    /// Returns the first, second and third coordinates of three points in the frame.
     ///
-    /// Each point's coordinates are a function of the point and the ray alone, whatever the lane and
-    /// whatever the other two: triangles that share a corner agree about it.
+    /// Each point's coordinates depend on the point and the ray alone, whatever the lane and
+    /// whatever the other two points. So triangles that share a corner agree about it.
     #[inline(always)]
     pub fn apply(&self, [a, b, c]: [[S; 3]; 3]) -> [[S; 3]; 3] {
         let relative = |k: usize| {
@@ -76,7 +80,7 @@ impl<S: Scalar> RayFrame<S> {
         ]
     }
 
-    /// The t at a third coordinate.
+    /// Returns the t at the third coordinate `z`.
     #[inline(always)]
     pub fn t(&self, z: S) -> S {
         z / self.forward

@@ -7,10 +7,12 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!("bvhkit without its feature `std` needs `libm`, for square roots");
 
-/// A coordinate: `f32` or `f64`. Sealed; a bound to write generic code with.
+/// A coordinate: `f32` or `f64`.
 ///
-/// Its arithmetic is the plain IEEE 754 one: no operation is fused or reordered, so that equal
-/// operands give equal bits on every machine.
+/// The trait is sealed; use it as a bound in generic code.
+///
+/// Its arithmetic is plain IEEE 754. No operation is fused or reordered, so equal operands give
+/// equal bits on every machine.
 pub trait Scalar:
     ScalarLanes
     + ScalarParts
@@ -33,94 +35,104 @@ pub trait Scalar:
     + Sync
     + 'static
 {
-    /// 0.
+    /// The number 0.
     const ZERO: Self;
-    /// 1.
+    /// The number 1.
     const ONE: Self;
-    /// 0.5.
+    /// The number 0.5.
     const HALF: Self;
-    /// -infinity.
+    /// Negative infinity.
     const NEG_INFINITY: Self;
-    /// +infinity.
+    /// Positive infinity.
     const INFINITY: Self;
-    /// The largest number.
+    /// The largest finite number.
     const MAX: Self;
     /// The distance from 1 to the next larger number: twice the largest relative rounding error.
     const EPSILON: Self;
 
-    /// The absolute value.
+    /// Returns the absolute value.
     fn abs(self) -> Self;
-    /// Itself, with its sign turned if `other` has a minus sign.
+    /// Returns `self`, with its sign flipped if `other` has a minus sign.
     fn xor_sign(self, other: Self) -> Self;
-    /// The square root, rounded correctly; NaN below zero.
+    /// Returns the square root, rounded correctly; NaN below zero.
     fn sqrt(self) -> Self;
-    /// Neither infinite nor NaN.
+    /// Returns whether the value is neither infinite nor NaN.
     fn is_finite(self) -> bool;
-    /// Finite and at least the smallest number of full precision in size.
+    /// Returns whether the value is finite, and neither zero nor subnormal.
     fn is_normal_number(self) -> bool;
-    /// Not a number.
+    /// Returns whether the value is NaN.
     fn is_nan(self) -> bool;
-    /// The next larger number (the smallest subnormal after zero).
+    /// Returns the next larger number (the smallest subnormal after zero).
     fn next_up(self) -> Self;
-    /// The next smaller number.
+    /// Returns the next smaller number.
     fn next_down(self) -> Self;
-    /// A total order, -0 before +0.
+    /// Compares by a total order, -0 before +0.
     fn total_cmp(&self, other: &Self) -> core::cmp::Ordering;
-    /// The nearest scalar to `value`.
+    /// Returns the scalar nearest to `value`.
     fn from_f64(value: f64) -> Self;
-    /// Exact for both scalars.
+    /// Converts to `f64`, exactly for both scalars.
     fn to_f64(self) -> f64;
-    /// An integer whose unsigned order is the total order of the scalars.
+    /// Returns an integer whose unsigned order is the total order of the scalars.
     fn to_ordered_bits(self) -> u64;
 }
 
-/// The vectors of a scalar.
+/// The vector types of a scalar.
 pub trait ScalarLanes: Sized {
-    /// Four of them side by side, for the slab test of two boxes.
+    /// Four scalars side by side, for the slab test of two boxes.
     type Lanes4: crate::simd::Lanes4<Self>;
-    /// Lanes of an instruction set.
+    /// Four lanes of the instruction set `I`.
     type Times4<I: Isa>: Lanes<Self, Isa = I>;
+    /// Eight lanes of the instruction set `I`.
     type Times8<I: Isa>: Lanes<Self, Isa = I> + Halves<Self::Times4<I>>;
+    /// Sixteen lanes of the instruction set `I`.
     type Times16<I: Isa>: Lanes<Self, Isa = I>;
-    /// Eight, to compute with beside sixteen.
+    /// Eight lanes, to compute with beside sixteen.
+    ///
+    /// With AVX-512 the vector holds each `f32` twice (see `simd::x86::doubled`).
     type Times8Doubled<I: Isa>: Lanes<Self, Isa = I>;
 }
 
-/// What this crate does with scalars, and users do not.
+/// Constants and operations of scalars that this crate uses, and users do not.
 pub trait ScalarParts: Sized {
-    /// No scalar is wider.
+    /// Whether no scalar is wider.
     const IS_WIDEST: bool;
-    /// A power of two: an area below it and above its inverse has rounded as it should.
+    /// A power of two: an area below it and above its inverse is rounded correctly.
     const LARGE_AREA: Self;
     /// The same for a volume, near the ends of the range.
     const LARGE_VOLUME: Self;
-    /// The scalar in which products and differences of this one's lose little or nothing: `f64`.
+    /// The wide scalar, which is `f64`.
+    ///
+    /// Products and differences of this scalar lose little or nothing in it.
     type Wide: Scalar;
 
-    /// Whether it is below zero, or -0.
+    /// Returns whether the value has a minus sign: it is below zero, or -0.
     fn has_minus_sign(self) -> bool;
-    /// `self * other`, rounded, and what the rounding left out, exactly but for underflow.
+    /// Returns `self * other`, rounded, and the part that was rounded away.
+    ///
+    /// The second part is exact, except for underflow.
     fn exact_product(self, other: Self) -> [Self; 2];
-    /// A power of two with which the product is in [1, 2] in size, if it is a normal number; a finite
-    /// one above zero for any.
+    /// Returns a power of two that scales a normal `self` to about 1.
+    ///
+    /// The size of the product is in [1, 2), or in [2, 4) if the exponent of `self` is the largest.
+    /// For every finite `self` the power is finite and above zero.
     fn inverse_power_of_two(self) -> Self;
-    /// One of two, without a branch.
+    /// Returns one of two values, without a branch.
     fn select(first: bool, if_first: Self, otherwise: Self) -> Self;
-    /// Exactly, in the wide scalar.
+    /// Converts to the wide scalar, exactly.
     fn widen(self) -> Self::Wide;
-    /// The nearest to a wide scalar.
+    /// Returns the scalar nearest to `wide`.
     fn narrow(wide: Self::Wide) -> Self;
-    /// The nearest scalar to a number of things.
+    /// Returns the scalar nearest to `count`.
     fn from_count(count: i32) -> Self;
 }
 
-/// The smaller of two, `b` if either is NaN: one `min` instruction.
+/// Returns the smaller of two, `b` if either is NaN: one `min` instruction.
 #[inline(always)]
 pub(crate) fn min<S: Scalar>(a: S, b: S) -> S {
     if a < b { a } else { b }
 }
 
-/// The larger of two, `b` if either is NaN: one `max` instruction.
+/// Returns the larger of two, `b` if either is NaN: one `max` instruction.
 #[inline(always)]
 pub(crate) fn max<S: Scalar>(a: S, b: S) -> S {
     if a > b { a } else { b }
@@ -190,7 +202,7 @@ macro_rules! scalar {
             }
             #[inline(always)]
             fn to_ordered_bits(self) -> u64 {
-                // Negative numbers have all bits flipped, the others the sign bit alone.
+                // All bits of negative numbers are flipped, and the sign bit alone of the others.
                 let bits = self.to_bits();
                 let mask = ((bits as $signed) >> ($bits::BITS - 1)) as $bits | (1 << ($bits::BITS - 1));
                 u64::from(bits ^ mask)
@@ -226,7 +238,8 @@ macro_rules! scalar {
             }
             #[inline(always)]
             fn inverse_power_of_two(self) -> Self {
-                // 2^e has the bits of (e + bias) << digits: negated, twice the bias is left over.
+                // The bits of 2^e are (e + bias) << digits. Those of 2^-e are twice the
+                // bias minus these.
                 let exponent = self.to_bits() & Self::INFINITY.to_bits();
                 let twice_the_bias = 2 * (1.0 as Self).to_bits();
                 Self::from_bits(twice_the_bias.wrapping_sub(exponent).max(Self::MIN_POSITIVE.to_bits()))

@@ -1,11 +1,12 @@
-//! The slab test: where along a ray a box begins and ends.
+//! The slab test: the t at which a ray enters and leaves a box.
 
 use super::{Aabb, Ray, Scalar, max, min};
 
-/// A ray prepared for slab tests: the interval of t inside a box is the intersection of its three
-/// slabs (Kay and Kajiya 1986).
+/// A ray prepared for slab tests.
 ///
-/// For each axis the ray's sign chooses which of the box's two planes is met first, so that
+/// The interval of t inside a box is the intersection of its three slabs (Kay and Kajiya
+/// 1986). For each axis, the sign of the ray's direction decides which of the box's two planes
+/// is met first, so that
 ///
 /// ```text
 /// near = max over axes of (near plane - origin) * inv_near
@@ -13,18 +14,21 @@ use super::{Aabb, Ray, Scalar, max, min};
 /// ```
 ///
 /// `inv_near` and `inv_far` are 1 / direction, made smaller and larger by 5 epsilon. Each side of
-/// the test makes at most four roundings of half an epsilon: underflow aside, the interval contains the
-/// exact one (Ize 2013, who widens the far side alone; both are needed where a hit is compared with
-/// `near`), and that of a box moved by another 2 epsilon of the distance to it, as corners are by the
-/// watertight triangle test. The padding takes no time: it is in the inverse. Behind the origin, at negative t, the two change places for a ray with a negative
-/// `t_min`; other rays never look there, and for them nothing is decided by the sign.
+/// the test makes at most four roundings of half an epsilon. So, underflow aside, the interval
+/// contains the exact one. Ize (2013) widens the far side alone; both sides are needed where a hit
+/// is compared with `near`. The interval also contains that of a box moved by another 2 epsilon of
+/// the distance to it, as the watertight triangle test moves corners. The padding takes no time: it
+/// is in the inverse.
 ///
-/// On an axis with direction +0 or -0 the inverse is infinite: a plane strictly on one side gives
-/// an infinity of the right sign, and a plane through the origin 0 * infinity = NaN, which the
+/// Behind the origin, at negative t, `inv_near` and `inv_far` change places for a ray with a
+/// negative `t_min`. Other rays never look there, and the sign decides nothing for them.
+///
+/// On an axis with direction +0 or -0 the inverse is infinite. A plane strictly on one side gives
+/// an infinity of the right sign. A plane through the origin gives 0 * infinity = NaN, which the
 /// comparison leaves out: the box's face counts as inside.
 ///
-/// Every step is a monotone function of the plane's coordinate (a rounded difference, a rounded
-/// product with a constant of one sign, a maximum that leaves NaN out). Therefore **if box A
+/// Every step is a monotone function of the plane's coordinate: a rounded difference, a rounded
+/// product with a constant of one sign, a maximum that leaves NaN out. Therefore **if box A
 /// contains box B then near(A) <= near(B) and far(A) >= far(B), in floating point, exactly.** The
 /// agreement of tree and naive loop rests on this (see `primitive::accept`).
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +36,9 @@ pub struct Slabs<S> {
     pub origin: [S; 3],
     pub inv_near: [S; 3],
     pub inv_far: [S; 3],
-    /// The near plane is the box's maximum: the direction's sign bit, so that -0 is like +0.
+    /// For each axis, whether the near plane is the box's maximum.
+    ///
+    /// This is the sign bit of the direction, so that -0 is like +0.
     pub negative: [bool; 3],
     pub t_min: S,
 }
@@ -54,7 +60,9 @@ impl<S: Scalar> Slabs<S> {
         }
     }
 
-    /// The t at which the ray enters the slab between two planes of an axis, and leaves it. For any ray.
+    /// Returns the t at which the ray enters and leaves the slab of an axis.
+    ///
+    /// The slab is between the planes `min` and `max`. The answer holds for any ray.
     #[inline(always)]
     pub fn slab(&self, axis: usize, [min, max]: [S; 2]) -> [S; 2] {
         let negative = self.negative[axis];
@@ -68,12 +76,14 @@ impl<S: Scalar> Slabs<S> {
         [at(first, inv_near, inv_far), at(last, inv_far, inv_near)]
     }
 
-    /// Where the ray enters the box, the interval of the ray left aside, if it meets the box at all
-    /// and does not leave it before `t_min`.
+    /// Returns the t at which the ray enters the box.
+    ///
+    /// Returns `None` if the ray misses the box, or leaves it before `t_min`. Apart from that, the
+    /// interval of the ray is ignored.
     #[inline(always)]
     pub fn entry(&self, aabb: &Aabb<S>) -> Option<S> {
         let (near, far) = if self.t_min < S::ZERO {
-            // A copy: a reference would keep the slabs out of registers on every other way.
+            // A copy: a reference would keep the slabs out of registers on every other path.
             let copy = *self;
             copy.interval_behind(aabb)
         } else {
@@ -89,7 +99,7 @@ impl<S: Scalar> Slabs<S> {
         (near <= far && far >= self.t_min).then_some(near)
     }
 
-    /// The interval of t inside the box, for a ray that also looks behind its origin.
+    /// Returns the interval of t inside the box, for a ray with a negative `t_min`.
     #[cold]
     #[inline(never)]
     fn interval_behind(&self, aabb: &Aabb<S>) -> (S, S) {

@@ -1,14 +1,14 @@
-//! Arithmetic of three scalars, each operation rounded once.
+//! Arithmetic on vectors of three scalars, each operation rounded once.
 
 use super::Scalar;
 
-/// The cross product: each coordinate a difference of two rounded products.
+/// Returns the cross product: each coordinate a difference of rounded products.
 #[inline(always)]
 pub(crate) fn cross<S: Scalar>([ax, ay, az]: [S; 3], [bx, by, bz]: [S; 3]) -> [S; 3] {
     [ay * bz - by * az, az * bx - bz * ax, ax * by - bx * ay]
 }
 
-/// The dot product, summed from the left.
+/// Returns the dot product, summed from the left.
 #[inline(always)]
 pub(crate) fn dot<S: Scalar>([ax, ay, az]: [S; 3], [bx, by, bz]: [S; 3]) -> S {
     ax * bx + ay * by + az * bz
@@ -18,7 +18,7 @@ pub(crate) fn dot<S: Scalar>([ax, ay, az]: [S; 3], [bx, by, bz]: [S; 3]) -> S {
 mod tests {
     use super::*;
 
-    /// Fails where the build fuses multiplication and addition.
+    /// Fails if the build fuses multiplication and addition.
     #[test]
     fn swapped_operands_negate_the_cross_product_and_dot_products_round_each_step() {
         // Two products that differ by less than a rounding.

@@ -1,4 +1,8 @@
-//! The wide tree, as planned: first where every block lies, then what is in it.
+//! The collapse of the binary tree into the wide tree.
+//!
+//! The plan of the collapse (`collapse_cost`) selects the children of each wide node.
+//! Then the first phase places every block (a node or a leaf) in memory, and the second
+//! phase writes the blocks.
 
 use super::buffers::Buffers;
 use super::collapse_cost::Plan;
@@ -13,23 +17,28 @@ use crate::tree::{Child, MAX_DEPTH, Tree};
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// NodeArena, and where the first is.
+/// The nodes and leaves of a wide tree, and the reference of its root.
 pub struct Collapsed {
     pub(super) arena: NodeArena,
     pub(super) root: Option<Reference>,
 }
 
-/// Subtrees of so many primitives and fewer are sections of their own: small enough to keep threads evenly busy.
+/// The maximum number of primitives in a subtree that is a section of its own.
+///
+/// It is small enough to keep threads evenly busy.
 const SECTION: u32 = 1 << 12;
 
-/// How many blocks ahead primitives are asked for.
+/// The prefetch distance for primitives, in blocks.
 const AHEAD: usize = 4;
 
-/// What belongs into memory, one after another. Small: there are as many as nodes and leaves.
+/// A node or a leaf to write, in the order of the memory.
+///
+/// The type is small, because every node and every leaf has one.
 struct Block {
     kind: Kind,
-    /// Of the children, sixteen at the most, or of the slots.
+    /// The number of children (at most 16), or the number of slots.
     count: u8,
+    /// The first child, by its index in the section's children, or the first slot.
     first: u32,
 }
 
@@ -43,52 +52,56 @@ impl Block {
     }
 }
 
-/// The top of the tree, or a subtree: where its blocks lie, in the order of the memory.
+/// The blocks of the top of the tree or of a subtree, in the order of the memory.
 struct Section<S> {
-    /// Where it begins, and how many bytes it takes.
+    /// The offset of the section in the arena, in bytes.
     start: usize,
+    /// The size of the section, in bytes.
     bytes: usize,
     arena: Vec<Block>,
-    /// Of all nodes, one after another. References are from the section's begin on.
+    /// The children of all nodes of the section, node after node.
+    ///
+    /// Offsets of blocks count from the start of the section.
     children: Vec<(Aabb<S>, Reference)>,
 }
 
-/// Where all blocks lie.
+/// The places of all blocks.
 struct Arrangement<S> {
     sections: Vec<Section<S>>,
     root: Option<Reference>,
 }
 
-/// A part of the binary tree that is to become a node.
+/// A binary node or a large leaf that is to become a wide node.
 struct Open<S> {
     child: Child,
     aabb: Aabb<S>,
-    /// Which of its section's children it is; none for the first.
+    /// The index in the section's children, or `None` for the section's first node.
     place: Option<usize>,
     depth: usize,
-    /// How many children of the nodes above it may be waiting when it is visited.
+    /// The maximum number of deferred children when the node is visited.
     pending: usize,
 }
 
-/// Why there is no wide tree.
+/// The reason why a collapse fails.
 enum Failure {
-    /// Its references cannot tell so many places apart.
+    /// References cannot address all blocks or slots.
     TooLarge,
-    /// A path through it is too long, or leaves too many children waiting.
+    /// A path is too long, or leaves too many deferred children.
     TooDeep,
 }
 
-/// Which children of binary nodes become those of a wide one.
+/// A function that selects the children of the wide node made from a binary node.
 type RootsOf<'p, S> = &'p (dyn Fn(usize, &mut Vec<(Child, Aabb<S>)>) + Sync);
 
-/// The wide tree with up to N children a node. None if the references cannot tell so many places
-/// apart.
+/// Returns the wide tree with up to `N` children per node.
 ///
-/// No path through it leaves more than [`MAX_STACK`] children behind or is longer than
-/// [`MAX_DEPTH`]: if the cheapest collapse has one, as that of a hostile heuristic's tree may, the
-/// tree is collapsed by levels instead. Then a path of at most `MAX_DEPTH` binary nodes becomes one
-/// of `MAX_DEPTH / log2(N)`, which leaves N - 1 children at each; and a leaf of 2^32 primitives
-/// adds no more than 30 / log2(N) to it.
+/// Returns `None` if references cannot address all blocks or slots.
+///
+/// No path through the wide tree leaves more than [`MAX_STACK`] deferred children or is longer than
+/// [`MAX_DEPTH`]. The cheapest collapse may have such a path, for example in the tree of a hostile
+/// heuristic. Then the tree is collapsed by levels instead. A path of at most `MAX_DEPTH` binary
+/// nodes becomes a path of `MAX_DEPTH / log2(N)` wide nodes, and each of them leaves N - 1 deferred
+/// children. A leaf of 2^32 primitives adds at most 30 / log2(N) nodes to the path.
 pub fn collapse<S: Scalar, const N: usize>(
     tree: &Tree<S>,
     contents: &dyn Contents<S>,
@@ -107,7 +120,7 @@ pub fn collapse<S: Scalar, const N: usize>(
     Some(Collapsed { arena: fill(&sections, tree, contents, shape, memory), root })
 }
 
-/// What does not change on the way.
+/// The inputs of a collapse, which never change.
 struct Work<'w, S, const N: usize> {
     plan: Plan<'w, S, N>,
     contents: &'w dyn Contents<S>,
@@ -115,7 +128,9 @@ struct Work<'w, S, const N: usize> {
 }
 
 impl<S: Scalar, const N: usize> Work<'_, S, N> {
-    /// Decides where every block lies: first the top, then the subtrees that are sections of their own.
+    /// Places every block: first the top, then the subtrees.
+    ///
+    /// Each of these subtrees is a section of its own.
     fn arrange(&self, roots_of: RootsOf<'_, S>) -> Result<Arrangement<S>, Failure> {
         let plan = &self.plan;
         let mut top = Section::with_capacity(0);
@@ -150,7 +165,7 @@ impl<S: Scalar, const N: usize> Work<'_, S, N> {
             let start = end.next_multiple_of(NodeArena::ALIGN);
             let section = Section { start, ..section? };
             end = start + section.bytes;
-            // A section begins with its first node.
+            // A section begins with the node of its root.
             *place.map_or(&mut root, |place| &mut top.children[place].1) = Reference::node(start);
             sections.push(section);
         }
@@ -162,7 +177,7 @@ impl<S: Scalar, const N: usize> Work<'_, S, N> {
     }
 }
 
-/// Writes every block.
+/// Writes every block into a new arena.
 fn fill<S: Scalar>(
     sections: &[Section<S>],
     tree: &Tree<S>,
@@ -177,7 +192,8 @@ fn fill<S: Scalar>(
         let mut moved = Vec::new();
         let mut end = 0usize;
         for (place, block) in arena.iter().enumerate() {
-            // Primitives lie in the input's order: waiting for them took half of the time.
+            // Primitives are stored in the order of the input. Without the prefetch, half of the
+            // time goes into waiting for them.
             if let Some(leaf) = arena.get(place + AHEAD).filter(|block| block.kind == Kind::Leaf) {
                 tree.indices[leaf.range()].iter().for_each(|&index| contents.prefetch(index));
             }
@@ -202,14 +218,16 @@ fn fill<S: Scalar>(
 }
 
 impl<S: Scalar> Section<S> {
-    /// With room for so many blocks.
+    /// Returns an empty section with room for `arena` blocks and children.
     fn with_capacity(arena: usize) -> Self {
         let (arena, children) = (Vec::with_capacity(arena), Vec::with_capacity(arena));
         Self { start: 0, bytes: 0, arena, children }
     }
 
-    /// Decides where the blocks below a node lie: the node, its leaves, then its inner children depth first, but for
-    /// those of which `takes` leaves nothing.
+    /// Places the blocks below a node: the node, its leaves, then its inner children.
+    ///
+    /// The inner children follow depth first. Children for which `takes`
+    /// returns `None` are left out.
     fn grow<const N: usize>(
         &mut self,
         root: Open<S>,
@@ -232,7 +250,8 @@ impl<S: Scalar> Section<S> {
                 roots_of(child.first as usize, &mut roots);
                 dissolve(&mut roots, plan);
             }
-            // The child to begin with in the highest lane: from there it is taken first if any hit will do.
+            // The roots are sorted by area, so the largest child is in the highest lane. A query
+            // for any hit visits that lane first.
             sort_by_area(&roots, plan, &mut keys, &mut sorted);
             let first = self.children.len();
             let node = Block::new(Kind::Node, first..first + roots.len());
@@ -257,7 +276,7 @@ impl<S: Scalar> Section<S> {
         Ok(())
     }
 
-    /// A new block behind all others; tells where it lies.
+    /// Appends a block, and returns its offset in the section.
     fn push(&mut self, block: Block, shape: &Shape<S>) -> usize {
         let (bytes, align) = shape.extent(block.kind);
         let offset = self.bytes.next_multiple_of(align);
@@ -275,12 +294,15 @@ impl<S: Scalar> Section<S> {
     }
 }
 
-/// Puts the runs of large leaves in their places, the largest leaf's first, while there is room in the node: a step less for each
-/// (rays take 1 % fewer).
+/// Replaces large leaves by their leaf ranges while there is room in the node.
+///
+/// The leaf with the largest area is replaced first. Each replacement saves the rays a step (rays
+/// take 1 % fewer steps).
 fn dissolve<S: Scalar, const N: usize>(roots: &mut Vec<(Child, Aabb<S>)>, plan: &Plan<'_, S, N>) {
     loop {
         let fits = |&(place, leaf): &(usize, Child)| {
-            // No fewer than full ones would be, and to look for them takes time.
+            // The number of leaf ranges is at least the number of full leaves. This test comes
+            // first, because the search for the leaf ranges takes time.
             let has_room = |leaf_ranges: usize| roots.len() - 1 + leaf_ranges <= N;
             let fits = has_room(leaf.count.div_ceil(LEAF_WIDTH as u32) as usize) && {
                 let leaf_ranges = plan.tree.leaf_ranges(leaf).len();
@@ -289,7 +311,8 @@ fn dissolve<S: Scalar, const N: usize>(roots: &mut Vec<(Child, Aabb<S>)>, plan: 
             fits.then(|| (place, plan.area(&roots[place].1)))
         };
         let leaves = roots.iter().map(|&(root, _)| root).enumerate();
-        // A run is found as the only one of itself: it is not to be replaced again.
+        // The only leaf range of a leaf range is the range itself. The test of the size
+        // prevents another replacement.
         let large = leaves.filter(|(_, root)| root.is_leaf() && root.count as usize > LEAF_WIDTH);
         let largest = large.filter_map(|leaf| fits(&leaf)).max_by(|(_, a), (_, b)| a.total_cmp(b));
         let Some((place, _)) = largest else { return };
@@ -298,7 +321,9 @@ fn dissolve<S: Scalar, const N: usize>(roots: &mut Vec<(Child, Aabb<S>)>, plan: 
     }
 }
 
-/// The parts that a leaf was cut into when it was built, if it was.
+/// Returns the leaf ranges that the build cut a leaf into, with their boxes.
+///
+/// There are none if the build did not cut the leaf.
 fn leaf_ranges<S: Scalar>(
     tree: &Tree<S>,
     leaf: Child,
@@ -307,7 +332,9 @@ fn leaf_ranges<S: Scalar>(
     tree.leaf_ranges(leaf).iter().map(move |run| (run.leaf, run.aabb.within(within)))
 }
 
-/// The same roots, the smallest first, in `sorted`. `keys` is memory.
+/// Writes the roots to `sorted`, the smallest area first.
+///
+/// `keys` is scratch memory.
 fn sort_by_area<S: Scalar, const N: usize>(
     roots: &[(Child, Aabb<S>)],
     plan: &Plan<'_, S, N>,
@@ -315,7 +342,7 @@ fn sort_by_area<S: Scalar, const N: usize>(
     sorted: &mut Vec<(Child, Aabb<S>)>,
 ) {
     keys.clear();
-    // Equal ones in their order.
+    // Roots of equal area stay in their order.
     let key = |(place, (_, aabb)): (u64, &(Child, Aabb<S>))| plan.area(aabb).to_ordered_bits() << 32 | place;
     keys.extend((0..).zip(roots).map(key));
     keys.sort_unstable();
@@ -323,7 +350,10 @@ fn sort_by_area<S: Scalar, const N: usize>(
     sorted.extend(keys.iter().map(|&key| roots[key as u32 as usize]));
 }
 
-/// A leaf too large for one block, with its box, as at most `n` parts: those that it was cut into, else equal ones.
+/// Appends at most `n` parts of a leaf that is too large for one block.
+///
+/// The parts are the leaf ranges that the build cut the leaf into. A leaf without leaf ranges is
+/// divided into equal parts.
 fn parts<S: Scalar>(
     (leaf, within): (Child, Aabb<S>),
     contents: &dyn Contents<S>,

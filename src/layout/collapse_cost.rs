@@ -1,21 +1,23 @@
-//! From the binary tree to the wide one: which nodes' children become children of one wide node, and which
-//! subtrees become one leaf.
+//! The plan of the collapse from the binary tree to the wide tree.
 //!
-//! By dynamic programming over the surface area heuristic (Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal
-//! on GPUs Through Compressed Wide BVHs, HPG 2017): for each binary node, the least cost of all that is below it if it
-//! is represented by a forest of at most k roots, for each k up to N.
+//! The plan selects the nodes that become the children of one wide node, and the
+//! subtrees that become one leaf.
+//!
+//! It uses dynamic programming over the surface area heuristic (Ylitie, Karras and Laine, Efficient
+//! Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, HPG 2017). For each binary node
+//! and each k up to N, it computes the least cost of everything below the node if a forest of at
+//! most k roots represents it.
 //!
 //! ```text
 //! forest(n, 1)  = min(leaf(n), node(n))
 //! forest(n, k)  = min(forest(n, k - 1), split(n, k))
 //! split(n, k)   = min over j of forest(left, j) + forest(right, k - j)
 //! node(n)       = area(n) * NODE + split(n, N)
-//! leaf(n)       = area(n) * LEAF, if its primitives fit into one
+//! leaf(n)       = area(n) * LEAF, if its primitives fit into one leaf
 //! ```
 //!
-//! Refused: opening the largest child until a node is full, as most do. Closest hits are found at 0.94 to 0.95 of the rate (primary,
-//! diffuse and random rays, six scenes; 0.88 to 1.02 each), any hits at 0.98 to 0.99, in 68 to 73 bytes a triangle instead of 61 to 67;
-//! the build takes as long.
+//! Refused: opening the largest child until a node is full, as most collapses do. Closest hits are
+//! found at 0.94 to 0.95 of the rate (measured: docs/decisions.md, 22).
 
 use crate::geometry::{Aabb, Scalar};
 use crate::leaf::LEAF_WIDTH;
@@ -25,20 +27,20 @@ use crate::tree::{Child, MAX_DEPTH, Tree};
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// The cost of a node: the unit of all others.
+/// The cost of a visit to a node: the unit of all costs.
 const NODE: f32 = 1.0;
 
-/// What it costs to visit a leaf.
+/// The cost of a visit to a leaf.
 #[derive(Clone, Copy)]
 pub struct LeafCost {
-    /// For each block of primitives that are tested at once.
+    /// The cost of each block of primitives that are tested at once.
     pub block: f32,
-    /// For each primitive.
+    /// The cost of each primitive.
     pub primitive: f32,
 }
 
 impl LeafCost {
-    /// Of primitives that are asked one by one.
+    /// The cost of a leaf whose primitives are tested one by one.
     pub const ONE_BY_ONE: Self = Self { block: 0.0, primitive: 0.5 };
 
     fn of(self, count: u32) -> f32 {
@@ -46,32 +48,34 @@ impl LeafCost {
     }
 }
 
-/// Subtrees of so many nodes are weighed at the same time.
+/// The maximum number of nodes in a subtree that is weighed as one parallel task.
 const SUBTREE: usize = 1 << 11;
 
-/// The binary tree with the costs of what it may become.
+/// The binary tree, with the costs of the wide trees that it may become.
 pub(super) struct Plan<'t, S, const N: usize> {
     pub tree: &'t Tree<S>,
-    /// For each inner node.
+    /// The weight of each inner node.
     weights: &'t [Weight<N>],
-    /// 1 / the largest extent.
+    /// The scale of areas: 1 / (the largest extent of the tree's box).
     scale: S,
     leaf: LeafCost,
 }
 
-/// What is known of all that is below a binary node.
+/// The costs and the slots of everything below a binary node.
 #[derive(Clone, Copy)]
 pub(super) struct Weight<const N: usize> {
-    /// By k - 1: the least cost of a forest of at most k roots, times the root's area.
+    /// At index k - 1, the least cost of a forest of at most k roots.
+    ///
+    /// This is the SAH cost times the area of the tree's root.
     forest: [f32; N],
-    /// How many roots it has at the most: more are no cheaper.
+    /// The maximum number of roots: more roots are no cheaper.
     roots: usize,
-    /// How many primitives there are, and the first slot.
+    /// The number of primitives, and the first slot.
     slots: (u32, u32),
 }
 
 impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
-    /// In memory in which nothing lies.
+    /// Computes the weights of a tree, in memory whose content is not needed.
     pub fn new(tree: &'t Tree<S>, leaf: LeafCost, memory: &'t mut Vec<Word>) -> Self {
         let unknown = Weight { forest: [0.0; N], roots: 0, slots: (0, 0) };
         let weights = lent(memory, tree.nodes.len(), unknown);
@@ -83,7 +87,7 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
             parts.push((nodes.start, part));
             (rest, done) = (behind, nodes.end);
         }
-        // Children lie behind their parents.
+        // Children are stored behind their parents, so each subtree is weighed from its end.
         parallel::each(&mut parts, |(first, weights)| {
             for place in (0..weights.len()).rev() {
                 let (until, below) = weights.split_at_mut(place + 1);
@@ -97,9 +101,10 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
         Self { weights, ..plan }
     }
 
-    /// The nodes of large subtrees, and the small subtrees below them, in the order of the nodes.
+    /// Returns the nodes above the small subtrees, and the small subtrees.
     ///
-    /// A tree's nodes lie depth first: behind a node are those of its left side, then those of its right.
+    /// Both are in the order of the nodes. A tree stores its nodes depth first: behind a node are
+    /// the nodes of its left side, then the nodes of its right side.
     fn divide(&self) -> (Vec<usize>, Vec<Range<usize>>) {
         let (mut top, mut subtrees) = (Vec::new(), Vec::new());
         let mut open = alloc::vec![0..self.tree.nodes.len()];
@@ -117,7 +122,9 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
         (top, subtrees)
     }
 
-    /// `below` are the weights of the nodes that follow.
+    /// Returns the weight of node `index`.
+    ///
+    /// `below` holds the weights of the nodes that follow.
     fn weight(&self, index: usize, below: &[Weight<N>]) -> Weight<N> {
         let node = &self.tree.nodes[index];
         let weight = |side: usize| match node.children[side] {
@@ -146,7 +153,7 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
         Weight { forest: [area * cost; N], roots: 1, slots: (leaf.count, leaf.first) }
     }
 
-    /// The cost of all below an inner node as one leaf.
+    /// Returns the cost of everything below an inner node as one leaf.
     fn leaf_cost(&self, area: f32, count: u32) -> f32 {
         if count as usize > LEAF_WIDTH { f32::INFINITY } else { area * self.leaf.of(count) }
     }
@@ -155,12 +162,12 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
         aabb.scaled_half_area(self.scale).to_f64() as f32
     }
 
-    /// How many primitives are below, and the first slot.
+    /// Returns the number of primitives below a child, and the first slot.
     pub fn slots(&self, child: Child) -> (u32, u32) {
         if child.is_leaf() { (child.count, child.first) } else { self.weights[child.first as usize].slots }
     }
 
-    /// Whether all below is to be one leaf, if it is a root.
+    /// Returns whether everything below a root becomes one leaf.
     pub fn is_leaf(&self, child: Child, aabb: &Aabb<S>) -> bool {
         let (count, _) = self.slots(child);
         count as usize <= LEAF_WIDTH
@@ -168,9 +175,11 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
                 || self.leaf_cost(self.area(aabb), count) <= self.weights[child.first as usize].forest[0])
     }
 
-    /// The roots that stand for the children of a binary node, at most N, with their boxes.
+    /// Appends the roots that replace the children of a binary node, with their boxes.
+    ///
+    /// There are at most `N` of them.
     pub fn cheapest(&self, node: usize, roots: &mut Vec<(Child, Aabb<S>)>) {
-        // What is still to be split, with how many roots it may have.
+        // The subtrees to split, each with its maximum number of roots.
         let mut open = Vec::with_capacity(MAX_DEPTH + 1);
         self.split(node, N, &mut open);
         while let Some((child, aabb, k)) = open.pop() {
@@ -179,7 +188,8 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
                 continue;
             }
             let forest = &self.weights[child.first as usize].forest;
-            // The fewest roots for that cost: fewer never cost less, and more no more.
+            // The smallest number of roots of that cost. Fewer roots never cost less, and more
+            // roots never cost more.
             let fewest = 1 + forest.iter().filter(|&&cost| cost > forest[k - 1]).count();
             if fewest == 1 {
                 roots.push((child, aabb));
@@ -189,7 +199,7 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
         }
     }
 
-    /// Divides k roots among the two children of a node.
+    /// Distributes k roots over the two children of a node.
     fn split(&self, node: usize, k: usize, open: &mut Vec<(Child, Aabb<S>, usize)>) {
         let node = &self.tree.nodes[node];
         let side = |side: usize| match node.children[side] {
@@ -199,7 +209,8 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
                 (&weight.forest, weight.roots)
             }
         };
-        // A leaf costs what it costs: leaving it out changes no order.
+        // The cost of a leaf is the same for every distribution, so leaving
+        // it out changes no order.
         let ((left, most_left), (right, most_right)) = (side(0), side(1));
         let k = k.min(most_left + most_right);
         let (mut best, mut least) = (1, f32::INFINITY);
@@ -213,8 +224,11 @@ impl<'t, S: Scalar, const N: usize> Plan<'t, S, N> {
         open.push((node.children[0], node.aabb(0), best));
     }
 
-    /// Instead of [`cheapest`](Self::cheapest): all that is a number of levels below a binary node, or a leaf before, as
-    /// many levels as N has room for.
+    /// Appends the roots at a fixed depth below a binary node.
+    ///
+    /// The depth is the number of levels that `N` roots have room for. A leaf above this
+    /// depth is a root too. This function replaces [`cheapest`](Self::cheapest) in a tree
+    /// that is too deep for it.
     pub fn by_levels(&self, node: usize, roots: &mut Vec<(Child, Aabb<S>)>) {
         let mut open = alloc::vec![(Child::inner(node), self.tree.aabb, 0)];
         while let Some((child, aabb, depth)) = open.pop() {

@@ -1,23 +1,27 @@
-//! Nodes with their children's boxes in 8 bits a plane, and leaves that are ranges of slots.
+//! Nodes whose children have boxes of 8 bits per plane, and leaves of slots.
 //!
 //! ```text
-//! blocks:  | node | node | ... |                           depth first
-//! node:    origin x, y, z; scale x, y, z; places of N children: x min, x max, y min, y max, z min, z max;
-//!          N references; which lanes have children
-//! indices: those of all primitives, by slot
+//! blocks:  | node | node | ... |       depth first
+//! node:    origin x, y, z; scale x, y, z;
+//!          quantized planes of N children: x min, x max, y min, y max, z min, z max;
+//!          N references; the lanes that have children
+//! indices: of all primitives, by slot
 //! ```
 //!
-//! A plane lies at origin + place * scale: see [`Grid`]. Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs
-//! Through Compressed Wide BVHs, HPG 2017; but that the whole origin and scales as scalars are kept, which are ready to be
-//! used, and a reference for each child, since leaves do not lie beside each other.
+//! The quantized plane q stands for origin + q * scale: see [`Grid`]. The format follows Ylitie,
+//! Karras and Laine, Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, HPG
+//! 2017, with two differences. Origin and scales are whole scalars, ready for use. Each child has a
+//! reference, because leaves are not stored next to each other.
 //!
-//! What lies in no leaf is fetched from the primitives: the leaf's test writes their operands into rows on the thread's stack,
-//! in which they are tested all at once. Refused, with shares of the rate in `Fast` mode on sponza and dragon:
+//! Leaves hold no operands. The leaf test gathers the operands from the primitives
+//! into rows on the thread's stack, and tests the rows all at once. Refused
+//! (measured: docs/decisions.md, 23):
 //!
-//! - asking them one by one: 0 to -14 % in trees with leaves of 6 primitives, +3 to -8 % with leaves of 3.4, in part noise;
-//! - gathering the next 8 slots whatever the leaf's size, without a branch: 0 to -8 %, for more primitives are touched;
-//! - 8 children a node instead of 16: -10 to -21 %, and a byte a triangle more;
-//! - leaves as full as those that lie packed: -22 % on sponza's shadow rays, else within the noise, and 0.8 bytes less.
+//! - testing the primitives one by one;
+//! - gathering the next 8 slots whatever the size of the leaf, without a branch: more
+//!   primitives are touched;
+//! - 8 children per node instead of 16: 10 to 21 % slower;
+//! - leaves as full as packed leaves.
 
 use super::collapse_cost::LeafCost;
 use super::encoding::{Encoding, Node};
@@ -28,26 +32,30 @@ use crate::leaf::{GATHERED, LEAF_WIDTH};
 use crate::simd::Lanes;
 use alloc::vec::Vec;
 
-/// The form for few bytes.
+/// The encoding for few bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compact {
-    /// The input's index of each slot's primitive, and [`LEAF_WIDTH`] more, so that as many follow the first slot of any leaf.
+    /// The input index of each slot's primitive, then [`LEAF_WIDTH`] more entries.
+    ///
+    /// So [`LEAF_WIDTH`] entries can be read from the first slot of any leaf on.
     indices: Vec<u32>,
 }
 
-/// An inner node: for 16 children in `f32` three cache lines, where there were seven.
+/// An inner node.
+///
+/// For 16 children in `f32` it takes three cache lines, where a packed node takes seven.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct CompactNode<S, const N: usize> {
     grid: Grid<S>,
-    /// By axis; minima, then maxima.
+    /// The quantized planes by axis: the minima, then the maxima.
     places: [[[u8; N]; 2]; 3],
     children: [Reference; N],
-    /// Bits of the lanes with children.
+    /// A bit for each lane that has a child.
     lanes: u64,
 }
 
-/// Without gaps.
+/// Returns whether a node has no padding.
 const fn is_plain<S, const N: usize>() -> bool {
     size_of::<CompactNode<S, N>>() == 6 * size_of::<S>() + 6 * N + 4 * N + 8
 }
@@ -56,7 +64,8 @@ const _: () = assert!(is_plain::<f32, 16>() && is_plain::<f32, 8>() && is_plain:
 const _: () = assert!(is_plain::<f64, 16>() && is_plain::<f64, 8>() && is_plain::<f64, 4>());
 const _: () = assert!(size_of::<CompactNode<f32, 16>>() == 192 && size_of::<CompactNode<f32, 8>>() == 112);
 
-// SAFETY: scalars and integers, without gaps: see above.
+// SAFETY: a node consists of scalars and integers, so any bytes are a node. It has no padding, as
+// the assertions on `is_plain` above ensure.
 unsafe impl<S: Scalar, const N: usize> Node<S, N> for CompactNode<S, N> {
     const ALIGN: usize = 64;
 
@@ -100,7 +109,7 @@ unsafe impl<S: Scalar, const N: usize> Node<S, N> for CompactNode<S, N> {
 
     fn child(&self, lane: usize) -> Option<(Aabb<S>, Reference)> {
         let at = |side: usize| [0, 1, 2].map(|axis| self.grid.at(axis, self.places[axis][side][lane]));
-        // No box of a child is infinite.
+        // A child's box is never infinite, but a decoded maximum may be.
         let aabb = Aabb { min: at(0), max: at(1).map(|max| min(max, S::MAX)) };
         (self.lanes >> lane & 1 != 0).then_some((aabb, self.children[lane]))
     }
@@ -148,7 +157,7 @@ impl<S: Scalar, const N: usize> Encoding<S, N> for Compact {
 
     #[inline(always)]
     unsafe fn indices(tree: &WideTree<S, N, Self>, leaf: Reference, _: usize) -> &[u32; LEAF_WIDTH] {
-        // Checked: it takes no time beside what leaves gather.
+        // The bounds are checked: the check takes no time compared with the gathering.
         tree.encoding.indices[leaf.slots().0..].first_chunk().expect("so many follow any slot")
     }
 
@@ -175,7 +184,7 @@ mod tests {
     use crate::simd::{Isa, KernelLanes};
     use core::array::from_fn;
 
-    /// The planes of a node in lanes: by axis, minima, then maxima.
+    /// A kernel that decodes the planes of a node, by axis: minima, then maxima.
     struct Planes<'a, S: Scalar, const N: usize>(&'a CompactNode<S, N>);
 
     impl<S: Scalar, const N: usize> Kernel for Planes<'_, S, N>
@@ -198,14 +207,16 @@ mod tests {
         }
     }
 
-    /// Boxes of all sizes along a diagonal, each axis with its own scale.
+    /// Returns boxes of all sizes along a diagonal; each axis has its own scale.
     fn boxes<S: Scalar>(count: usize, scale: f64) -> Vec<(Aabb<S>, Reference)> {
         let corner = |x: f64| [0.37, 1.0, -1e-3].map(|axis| S::from_f64(scale * axis * x));
         let aabb = |k: usize| Aabb::of_points([corner(k as f64 / 7.0 - 0.9), corner((k * k) as f64 / 50.0)]);
         (0..count).map(|k| (aabb(k), Reference::node(64 * k))).collect()
     }
 
-    /// Lanes compute what scalars do, and both a box around the child's, on every instruction set.
+    /// Checks that lanes and scalars decode the same boxes on every instruction set.
+    ///
+    /// Each box contains the child's box.
     fn check<S: Scalar, const N: usize>(scale: f64)
     where
         Count<N>: Width,

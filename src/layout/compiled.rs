@@ -1,12 +1,14 @@
-//! What is compiled in this crate, for `f32` and for `f64`: see `builders::compiled`.
+//! Layout functions that this crate compiles for `f32` and for `f64`.
+//!
+//! See `builders::compiled`.
 
 use super::{Buffers, Collapsed, Contents, Shape, WIDTH, collapse};
 use crate::geometry::Scalar;
 use crate::tree::Tree;
 
-/// Layouts of a scalar.
+/// The layout functions of a scalar.
 pub trait CompiledLayout: Sized {
-    /// The wide tree of nodes of [`WIDTH`].
+    /// Returns the wide tree whose nodes have up to [`WIDTH`] children.
     fn collapse(
         tree: &Tree<Self>,
         contents: &dyn Contents<Self>,

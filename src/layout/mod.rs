@@ -1,4 +1,4 @@
-//! The memory that queries walk, made from the binary tree.
+//! The layouts that queries traverse, made from the binary tree.
 
 mod buffers;
 mod collapse;
@@ -30,61 +30,79 @@ use crate::simd::prefetch;
 use crate::tree::{Child, Node, Tree};
 use core::mem::take;
 
-/// Children of a node. The code is generic over it; kernels are compiled for this one.
+/// The maximum number of children of a node.
+///
+/// The code is generic over this number. Kernels are compiled for this value alone.
 pub(crate) const WIDTH: usize = 16;
 
-/// How a hierarchy lies in memory: [`WideTree`], the default, for speed; [`CompactTree`], for few bytes; [`Tree`], as it was
-/// built.
+/// The arrangement of a hierarchy in memory.
 ///
-/// A type parameter of [`Bvh`](crate::Bvh), chosen by [`Builder::layout`](crate::Builder::layout). What is not chosen
-/// is not linked. Answers are the same bits in all.
+/// [`WideTree`], the default, is for speed. [`CompactTree`] is for few bytes. [`Tree`] is
+/// the tree as it was built.
+///
+/// The layout is a type parameter of [`Bvh`](crate::Bvh).
+/// [`Builder::layout`](crate::Builder::layout) chooses it. The code of the other layouts is not
+/// linked. All layouts give the same answers, bit for bit.
 pub trait Layout<P: Primitive>: Outline<P::Scalar> + Send + Sized {
-    /// How many primitives a leaf tests at once.
+    /// The number of primitives that a leaf tests at once.
     #[doc(hidden)]
     const BLOCK_SIZE: usize;
 
-    /// Into how many leaves it divides a large one of the tree that has runs.
+    /// The maximum number of leaf ranges in a large leaf of the binary tree.
+    ///
+    /// It is 1 if the layout does not divide leaves.
     #[doc(hidden)]
     const LEAF_RANGES: usize;
 
-    /// How many bytes are reserved for each primitive, if it may take more than references do.
+    /// The number of bytes to reserve for each primitive.
+    ///
+    /// It is 0 for a layout that takes no more than the references of the build.
     #[doc(hidden)]
     const RESERVE: usize;
 
-    /// Lays out a tree over the primitives with its indices, and takes from it what is kept.
+    /// Lays out a tree, whose indices refer to `primitives`.
+    ///
+    /// Takes from the tree the buffers that the layout keeps. Returns `None` if the tree is too
+    /// large for the layout's references.
     #[doc(hidden)]
     fn lay_out(tree: &mut Tree<P::Scalar>, primitives: &[P], buffers: &mut Buffers) -> Option<Self>;
 
-    /// Gives back memory that it does not need.
+    /// Frees the memory that the layout does not need.
     #[doc(hidden)]
     fn shrink(&mut self);
 
-    /// Leaves its memory to the next, what was taken from a tree as one.
+    /// Leaves the memory of the layout to the next build.
+    ///
+    /// Buffers that came from a tree return as a tree. The others go to `buffers`.
     #[doc(hidden)]
     fn recycle(self, buffers: &mut Buffers) -> Tree<P::Scalar>;
 }
 
-/// What there is to know about any hierarchy without a ray.
+/// The structure of a hierarchy, for code that traces no rays.
 #[doc(hidden)]
 pub trait Outline<S: Scalar> {
-    /// Where a node or a leaf lies.
+    /// The position of a node or a leaf.
     type Place: Copy;
-    /// None if it is empty.
+    /// Returns the place of the root, or `None` if the hierarchy is empty.
     fn root(&self) -> Option<Self::Place>;
-    /// The box around everything.
+    /// Returns the box around all primitives.
     fn aabb(&self) -> Aabb<S>;
-    /// Primitives in leaves.
+    /// Returns the number of primitives in leaves.
     fn len(&self) -> usize;
-    /// The same, each as often as it is in a leaf.
+    /// Returns the number of entries in all leaves.
+    ///
+    /// A primitive counts once for each leaf that holds it.
     fn references(&self) -> usize;
-    /// Bytes of memory.
+    /// Returns the memory that the hierarchy takes, in bytes.
     fn bytes(&self) -> usize;
-    /// Shows what is in a place, one by one. False if there is no such place.
+    /// Calls `show` with each item of a node or a leaf.
+    ///
+    /// Returns false if the hierarchy has no such place.
     fn open(&self, place: Self::Place, show: impl FnMut(Part<S, Self::Place>)) -> bool;
 }
 
 impl<S, B> Part<S, B> {
-    /// The place of a child.
+    /// Returns the place of a child, or `None` for a primitive.
     pub fn child(self) -> Option<B> {
         match self {
             Self::Child(_, place) => Some(place),
@@ -93,12 +111,12 @@ impl<S, B> Part<S, B> {
     }
 }
 
-/// What is in a node or in a leaf.
+/// An item of a node or a leaf.
 #[doc(hidden)]
 pub enum Part<S, B> {
-    /// A child with its box.
+    /// A child: its box and its place.
     Child(Aabb<S>, B),
-    /// A primitive, by its index in the input.
+    /// A primitive: its index in the input.
     Primitive(u32),
 }
 
@@ -182,12 +200,16 @@ impl<S: Scalar, const N: usize, F: Encoding<S, N>> Outline<S> for WideTree<S, N,
 }
 
 impl<P: Intersect, F: Encoding<P::Scalar, WIDTH>> Layout<P> for WideTree<P::Scalar, WIDTH, F> {
-    /// Where operands have to be gathered first, each counts.
+    /// 8 for packed leaves with operands, else 1.
+    ///
+    /// Where operands have to be gathered first, each primitive costs time.
     const BLOCK_SIZE: usize =
         if F::COPIES && <P::Leaf as LeafKind<_, P::Payload>>::OPERANDS > 0 { LEAF_WIDTH } else { 1 };
     const LEAF_RANGES: usize = WIDTH;
-    /// Bytes for leaves of five primitives, and for nodes whose children have eight each: the maximum
-    /// of split trees in the scenes of `docs/building.md`. The build returns unused bytes.
+    /// Bytes per primitive, if leaves hold five and children of nodes hold eight each.
+    ///
+    /// In the scenes of `docs/building.md`, trees that are built by splits take no more bytes than
+    /// these. The build frees unused bytes.
     const RESERVE: usize = if <Self as Layout<P>>::BLOCK_SIZE > 1 {
         let leaf = <P::Leaf as LeafKind<_, P::Payload>>::OPERANDS * size_of::<[P::Scalar; LEAF_WIDTH]>()
             + size_of::<[u32; LEAF_WIDTH]>();
@@ -236,7 +258,9 @@ mod tests {
     use super::*;
     use crate::{Bvh, Sphere};
 
-    /// Every place that a reference can tell of, and the ends of the range, opened in small trees: nothing beyond their memory is read.
+    /// Opens the first and the last places of the range of references, in small trees.
+    ///
+    /// No read leaves the memory of the tree.
     #[test]
     fn any_place_can_be_opened_in_any_tree() {
         fn open<L: Layout<Sphere> + Outline<f32, Place = Reference>>(count: u8) {

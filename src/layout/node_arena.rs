@@ -1,4 +1,4 @@
-//! Nodes and leaves of different sizes, one after another in line-aligned memory.
+//! The node arena: nodes and leaves of different sizes, in line-aligned memory.
 
 use crate::memory::Word;
 use crate::parallel;
@@ -7,41 +7,49 @@ use alloc::vec::Vec;
 use core::mem::MaybeUninit;
 use core::ops::Range;
 
-/// Bytes in a cache line.
+/// The size of a cache line, in bytes.
 const LINE: usize = 64;
 
-/// Memory in which blocks of plain data lie: all of it initialised, with zeros between them.
+/// Memory for blocks of plain data, with zeros between the blocks.
 ///
-/// It is cleared block by block, just before each is written: clearing all at once, by the system or by the allocator, took 1 of the
-/// 21 ms of a quick build of sponza, and on the calling thread a tenth of a build on two.
+/// All of the memory is initialised. It is cleared block by block, just before each block is
+/// written. Clearing all at once, by the system or by the allocator, takes 1 of the 21 ms of a
+/// quick build of sponza (measured: docs/decisions.md, 25).
 ///
-/// In pages of any size. Asking the system for pages of 2 MiB (`madvise`) for this and the build's large buffers halved the page
-/// faults, and made first builds of a process with `Quality::Fast` a fifth quicker (sponza 36 to 30 ms, dragon 27 to 23), but with
-/// `Quality::Balanced` up to two fifths slower (sponza 71 to 69, 92 and 99 ms): on a virtual machine, which waits for its host where
-/// it touches memory that was given back. The kernel had nothing to compact. Rays were quicker by 1 %.
+/// Pages may have any size. Refused: pages of 2 MiB (`madvise`) for the arena and the build's large
+/// buffers. They make builds with `Quality::Fast` faster, but builds with `Quality::Balanced`
+/// slower (measured: docs/decisions.md, 26).
 #[derive(Default)]
 pub struct NodeArena {
-    /// One line more than there is room for: somewhere in them the first line begins.
+    /// The words of all lines, and one line more.
+    ///
+    /// The first line begins at an aligned address inside of them.
     words: Vec<Word>,
-    /// The first line's first word.
+    /// The index of the first line's first word.
     first: usize,
-    /// How many lines there are.
+    /// The number of lines.
     lines: usize,
 }
 
 const WORDS: usize = LINE / size_of::<Word>();
 
 impl NodeArena {
-    /// Blocks begin at multiples of this many bytes.
+    /// The unit of offsets: blocks begin at multiples of this number of bytes.
     pub const UNIT: usize = 8;
 
-    /// No block has to begin at multiples of more.
+    /// The largest alignment of a block, in bytes.
     pub const ALIGN: usize = LINE;
 
-    /// In memory for so many words, which `memory` has.
+    /// Creates an arena, whose parts are written independently.
     ///
-    /// Parts are written independently, each by `write`, which is told its number. They are `ranges` of bytes, which begin
-    /// with lines and follow one another from 0 on but for what is left of a line. If all are empty, none is written.
+    /// `memory` returns an empty buffer with room for the given number of words. `ranges` are the
+    /// parts, in bytes. The first part begins at 0. Each other part begins at the first line that
+    /// is at or behind the end of the part before it. `write` writes a part, by its number. If all
+    /// parts are empty, `write` is not called.
+    ///
+    /// # Panics
+    ///
+    /// If the parts do not follow one another in this way, or if the buffer is too small.
     pub fn filled(
         memory: impl FnOnce(usize) -> Vec<Word>,
         ranges: &[Range<usize>],
@@ -72,38 +80,40 @@ impl NodeArena {
             write(*number, part);
             part.clear_to(size_of_val(part.words));
         });
-        // SAFETY: what is before and behind the lines was written above, and the parts, which are all lines, to their ends.
+        // SAFETY: all `len` words are initialised. The words before and behind the lines
+        // were written above. The parts are all of the lines, and each part was written
+        // or cleared to its end.
         unsafe { words.set_len(len) }
         Self { words, first, lines }
     }
 
-    /// Gives back the memory that it does not need.
+    /// Frees the memory that the arena does not need.
     pub fn shrink(&mut self) {
         let before = self.start().addr() % LINE;
         self.words.shrink_to_fit();
-        // It may have moved, and then lines begin elsewhere.
+        // The memory may have moved. If it is aligned differently, the lines are copied.
         if self.start().addr() % LINE != before {
             *self = self.clone();
         }
     }
 
-    /// The memory, for others.
+    /// Returns the memory, for other uses.
     pub fn into_words(self) -> Vec<Word> {
         self.words
     }
 
-    /// Bytes of memory.
+    /// Returns the size of the memory, in bytes.
     pub fn bytes(&self) -> usize {
         self.words.capacity() * size_of::<Word>()
     }
 
-    /// Bytes of the lines.
+    /// Returns the size of all lines, in bytes.
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.lines * LINE
     }
 
-    /// All lines' words, to be compared.
+    /// Returns the words of all lines, for comparisons.
     pub fn words(&self) -> &[Word] {
         &self.words[self.first..][..self.lines * WORDS]
     }
@@ -113,31 +123,36 @@ impl NodeArena {
         self.words.as_ptr().wrapping_add(self.first).cast()
     }
 
-    /// PackedQuery for lines to be brought into the cache. Any offset will do.
+    /// Prefetches lines into the cache.
+    ///
+    /// Any offset is allowed.
     #[inline(always)]
     pub fn prefetch(&self, offset: usize, bytes: usize) {
         prefetch(self.start().wrapping_add(offset), bytes);
     }
 
-    /// What lies at an offset.
+    /// Returns the item at an offset.
     ///
     /// # Safety
-    /// Any bytes are a `T`, and one lies there: inside and aligned.
+    ///
+    /// Any bytes are a `T`, and the item at the offset is inside the arena and aligned.
     #[inline(always)]
     pub unsafe fn get<T>(&self, offset: usize) -> &T {
-        // SAFETY: the caller's.
+        // SAFETY: the caller ensures the conditions of `get_slice` for one item.
         unsafe { &*self.get_slice(offset, 1).as_ptr() }
     }
 
-    /// What lies at an offset, one after another.
+    /// Returns a slice of items at an offset.
     ///
     /// # Safety
-    /// Any bytes are a `T`, and `len` of them lie there: inside and aligned.
+    ///
+    /// Any bytes are a `T`, and the `len` items at the offset are inside the arena and aligned.
     #[inline(always)]
     pub unsafe fn get_slice<T>(&self, offset: usize, len: usize) -> &[T] {
         debug_assert!(offset + len * size_of::<T>() <= self.lines * LINE);
         debug_assert!(offset.is_multiple_of(align_of::<T>()));
-        // SAFETY: the caller's.
+        // SAFETY: the caller ensures that the items are inside the arena and aligned, and that any
+        // bytes are a `T`. All bytes of the arena are initialised by `filled`.
         unsafe { core::slice::from_raw_parts(self.start().add(offset).cast(), len) }
     }
 }
@@ -146,61 +161,68 @@ impl Clone for NodeArena {
     fn clone(&self) -> Self {
         let words = self.words();
         let copy = &|_: usize, part: &mut Part<'_>| {
-            // SAFETY: words are any bytes, and any bytes are some.
+            // SAFETY: any bytes are a word, and a word has no padding.
             unsafe { part.get_mut(0, words.len()) }.copy_from_slice(words);
         };
         Self::filled(Vec::with_capacity, core::slice::from_ref(&(0..size_of_val(words))), copy)
     }
 }
 
-/// A part of the memory, to be written.
+/// A part of an arena that is being written.
 pub struct Part<'m> {
     words: &'m mut [MaybeUninit<Word>],
-    /// So many bytes at the begin are initialised.
+    /// The number of initialised bytes at the start of the part.
     clear: usize,
 }
 
 impl Part<'_> {
-    /// What lies at an offset from the part's begin, one after another; zeros where nothing was written yet.
+    /// Returns a slice of items at an offset from the start of the part.
+    ///
+    /// Bytes that were not written yet are zeros.
     ///
     /// # Safety
-    /// Any bytes are a `T`, and a `T` is any bytes.
+    ///
+    /// Any bytes are a `T`, and a `T` has no padding.
     ///
     /// # Panics
-    /// If they are not inside of the part, or not aligned.
+    ///
+    /// If the items are not inside the part, or not aligned.
     pub unsafe fn get_mut<T>(&mut self, offset: usize, len: usize) -> &mut [T] {
         let end = size_of::<T>().checked_mul(len).and_then(|bytes| bytes.checked_add(offset));
         let end = end.filter(|&end| end <= size_of_val(self.words)).expect("a block lies inside of its part");
         assert!(align_of::<T>() <= LINE && offset.is_multiple_of(align_of::<T>()));
         self.clear_to(end);
-        // SAFETY: inside and aligned, as was just asked, and initialised; the bytes are a T by the caller's word.
+        // SAFETY: the items are inside the part and aligned, as checked above, and `clear_to` has
+        // initialised them. The caller ensures that any bytes are a `T`.
         unsafe {
             core::slice::from_raw_parts_mut(self.words.as_mut_ptr().cast::<u8>().add(offset).cast(), len)
         }
     }
 
-    /// Writes what lies at an offset.
+    /// Writes a value at an offset from the start of the part.
     ///
     /// # Safety
-    /// A `T` is any bytes, all of them initialised: it has no gaps.
+    ///
+    /// A `T` has no padding: all of its bytes are initialised.
     ///
     /// # Panics
-    /// If it is not inside of the part, or not aligned.
+    ///
+    /// If the value is not inside the part, or not aligned.
     pub unsafe fn put<T>(&mut self, offset: usize, value: T) {
         let end = size_of::<T>().checked_add(offset);
         let end = end.filter(|&end| end <= size_of_val(self.words)).expect("a block lies inside of its part");
         assert!(align_of::<T>() <= LINE && offset.is_multiple_of(align_of::<T>()));
         self.clear_to(offset);
-        // SAFETY: inside and aligned, as was just asked.
+        // SAFETY: the value is inside the part and aligned, as checked above.
         unsafe { self.words.as_mut_ptr().cast::<u8>().add(offset).cast::<T>().write(value) }
         self.clear = self.clear.max(end);
     }
 
-    /// Initialises all up to `end`, which is inside of the part, with zeros where nothing was.
+    /// Writes zeros to all uninitialised bytes before `end`, inside the part.
     fn clear_to(&mut self, end: usize) {
         debug_assert!(end <= size_of_val(self.words));
         if let Some(more) = end.checked_sub(self.clear) {
-            // SAFETY: inside of the part.
+            // SAFETY: the bytes are inside the part: each caller passes an `end` inside it.
             unsafe { self.words.as_mut_ptr().cast::<u8>().add(self.clear).write_bytes(0, more) }
             self.clear = end;
         }
@@ -211,10 +233,10 @@ impl Part<'_> {
 mod tests {
     use super::*;
 
-    /// What is written where it was said, zeros elsewhere, lines where lines begin.
+    /// Checks the written bytes, the zeros elsewhere, and the alignment of lines.
     #[test]
     fn parts_are_written_and_the_rest_is_clear() {
-        // What the allocator has at hand for the same size is not clear.
+        // Memory of this size that the allocator has at hand is not zero.
         drop(core::hint::black_box(alloc::vec![Word([u64::MAX; 2]); 384 / 16 + WORDS]));
         let arena = NodeArena::filled(
             Vec::with_capacity,
@@ -223,7 +245,7 @@ mod tests {
                 if number == 2 {
                     return;
                 }
-                // SAFETY: bytes are any bytes.
+                // SAFETY: any byte is a `u8`.
                 let places: &mut [u8] = unsafe { part.get_mut(number, 1) };
                 assert_eq!(places, [0]);
                 places[0] = number as u8 + 1;
@@ -236,10 +258,10 @@ mod tests {
         (expected[0], expected[129], expected[323]) = (1, 2, 4);
         assert_eq!(bytes, expected);
         assert_eq!(arena.clone().words(), arena.words());
-        // In memory for more, of which the rest is given back.
+        // An arena in too large a buffer, whose rest `shrink` frees.
         let threefold = |len| Vec::with_capacity(3 * len);
         let mut large = NodeArena::filled(threefold, core::slice::from_ref(&(0..1000)), &|_, part| {
-            // SAFETY: bytes are any bytes.
+            // SAFETY: any byte is a `u8`.
             unsafe { part.get_mut::<u8>(0, 1000) }.fill(7);
         });
         let (exact, before) = (large.clone(), large.bytes());

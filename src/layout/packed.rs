@@ -1,12 +1,12 @@
-//! Nodes with their children's boxes as they are, and leaves whose primitives lie side by side.
+//! Nodes that store their children's boxes as scalars, and packed leaves.
 //!
 //! ```text
-//! blocks: | node | leaf leaf leaf | node | leaf ... |      depth first, leaves right behind their node
+//! blocks: | node | leaf leaf leaf | node | leaf ... |  depth first, leaves right behind their node
 //! node:   planes of N children: x min, x max, y min, y max, z min, z max; N references
 //! leaf:   operands of 8 primitives, row by row; their 8 indices
 //! ```
 //!
-//! Children that there are not have boxes that no ray meets, primitives that there are not have operands NaN.
+//! Lanes without a child have boxes that no ray meets. Lanes without a primitive have operands NaN.
 
 use super::collapse_cost::LeafCost;
 use super::encoding::{Encoding, Node};
@@ -16,10 +16,10 @@ use crate::leaf::LEAF_WIDTH;
 use crate::simd::Lanes;
 use alloc::vec::Vec;
 
-/// The form for speed.
+/// The encoding for speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packed {
-    /// How many scalars of each primitive lie in its leaf.
+    /// The number of operands of each primitive that a leaf stores.
     operands: usize,
 }
 
@@ -27,12 +27,12 @@ pub struct Packed {
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
 pub struct WideNode<S, const N: usize> {
-    /// By axis; minima, then maxima.
+    /// The planes by axis: the minima, then the maxima.
     planes: [[[S; N]; 2]; 3],
     children: [Reference; N],
 }
 
-/// Whether a node is its scalars and integers alone.
+/// Returns whether a node has no padding.
 const fn has_no_gaps<S: Scalar, const N: usize>() -> bool {
     size_of::<WideNode<S, N>>() == N * (6 * size_of::<S>() + size_of::<Reference>())
 }
@@ -40,9 +40,10 @@ const fn has_no_gaps<S: Scalar, const N: usize>() -> bool {
 const _: () = assert!(has_no_gaps::<f32, 4>() && has_no_gaps::<f32, 8>() && has_no_gaps::<f32, 16>());
 const _: () = assert!(has_no_gaps::<f64, 4>() && has_no_gaps::<f64, 8>() && has_no_gaps::<f64, 16>());
 
-// SAFETY: scalars and integers, without gaps: of the widths that there are, see above.
+// SAFETY: a node consists of scalars and integers, so any bytes are a node. It has no padding in
+// the widths that are used, as the assertions on `has_no_gaps` above ensure.
 unsafe impl<S: Scalar, const N: usize> Node<S, N> for WideNode<S, N> {
-    /// Rows of planes that are as long as a line begin with one.
+    /// Rows of planes that are as long as a cache line begin at one.
     const ALIGN: usize = if size_of::<[S; N]>() >= 64 { 64 } else { 32 };
 
     fn new(children: &[(Aabb<S>, Reference)]) -> Self {
@@ -119,7 +120,8 @@ impl<S: Scalar, const N: usize> Encoding<S, N> for Packed {
     #[inline(always)]
     unsafe fn indices(tree: &WideTree<S, N>, leaf: Reference, operands: usize) -> &[u32; LEAF_WIDTH] {
         debug_assert_eq!(tree.encoding.operands, operands);
-        // SAFETY: indices are any bytes, and a leaf lies there, by the caller's word. They follow its operands' rows.
+        // SAFETY: any bytes are indices. The caller ensures that a leaf is there, whose indices
+        // follow its rows of operands. `Shape::extent` aligns leaves.
         unsafe { tree.arena.get(leaf.offset() + operands * size_of::<[S; LEAF_WIDTH]>()) }
     }
 
@@ -127,7 +129,8 @@ impl<S: Scalar, const N: usize> Encoding<S, N> for Packed {
         let rows = tree.encoding.operands.checked_mul(size_of::<[S; LEAF_WIDTH]>())?;
         let offset = leaf.offset().checked_add(rows)?;
         let fits = offset.checked_add(size_of::<[u32; LEAF_WIDTH]>())? <= tree.arena.len();
-        // SAFETY: indices are any bytes, and these lie inside of the blocks, at a multiple of eight.
+        // SAFETY: any bytes are indices. These are inside the arena, as checked above, and aligned:
+        // offsets of leaves and sizes of rows are multiples of 8.
         fits.then(|| unsafe { tree.arena.get(offset) })
     }
 
@@ -139,7 +142,8 @@ impl<S: Scalar, const N: usize> Encoding<S, N> for Packed {
     #[inline(always)]
     unsafe fn rows(tree: &WideTree<S, N>, leaf: Reference, operands: usize) -> &[[S; LEAF_WIDTH]] {
         debug_assert_eq!(tree.encoding.operands, operands);
-        // SAFETY: scalars are any bytes, and a leaf lies there, by the caller's word. It begins with its operands' rows.
+        // SAFETY: any bytes are scalars. The caller ensures that a leaf is there, which begins with
+        // its rows of operands. `Shape::extent` aligns leaves.
         unsafe { tree.arena.get_slice(leaf.offset(), operands) }
     }
 }

@@ -1,21 +1,25 @@
-//! Bounds in 8 bits each: the places of a grid that covers a node, rounded outward.
+//! Bounds of 8 bits each: planes of a grid that covers a node, rounded outward.
 
 use crate::geometry::{Aabb, Scalar};
 
-/// The grids of a node on its three axes: place q of an axis lies at `origin + q * scale`.
+/// The grid of a node, on three axes: plane q is at `origin + q * scale`.
 ///
-/// # Why the boxes contain what they should
+/// # Why decoded boxes contain the children's boxes
 ///
-/// A bound is what [`at`](Self::at) computes of its place: nothing compares it with what exact arithmetic would
-/// make of it. `q * scale` is rounded where it overflows or underflows alone, since the scale is a power of two, and the sum
-/// may be rounded anywhere; both are monotone in q, and so is `at`. Each place is chosen by what `at` computes: for
-/// a minimum the last that is not above it (place 0 is not: `origin` is the least of the minima, to the bit), for a maximum
-/// the first that is not below it (place 255 is not: the scale is doubled until then). Lanes do the same two operations, nothing is
-/// fused, and so they compute the same bits. Whatever the scene's size and place, the box that a ray meets contains the
-/// child's; where it is far from the origin places fall together, and near the end of the range the last ones are infinite, which
-/// makes boxes larger.
+/// The bound of a quantized plane is the value that [`at`](Self::at) computes. Nothing compares
+/// this value with the result of exact arithmetic. `q * scale` is rounded only where it overflows
+/// or underflows, because the scale is a power of two. The sum may be rounded anywhere. Both
+/// operations are monotone in q, so `at` is monotone too.
 ///
-/// No place is NaN: origin and scale are finite.
+/// Each plane is chosen by the values of `at`. For a minimum it is the last plane that is not above
+/// the minimum. Plane 0 is not above it, because `origin` is the least of the minima, to the bit.
+/// For a maximum it is the first plane that is not below the maximum. Plane 255 is not below it,
+/// because the scale is doubled until then. Lanes do the same two operations, and nothing is fused,
+/// so they compute the same bits. Whatever the size and the place of the scene, the box that a ray
+/// meets contains the child's box. Far from the origin, planes coincide. Near the end of the range,
+/// the last planes are infinite. Both make boxes larger.
+///
+/// No plane is NaN, because origin and scale are finite.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Grid<S> {
@@ -24,19 +28,21 @@ pub struct Grid<S> {
 }
 
 impl<S: Scalar> Grid<S> {
-    /// Over all of a valid box.
+    /// Creates the grid over a valid box.
     pub fn over(aabb: &Aabb<S>) -> Self {
         let scale = |axis: usize| scale(aabb.min[axis], aabb.max[axis]);
         Self { origin: aabb.min, scale: [scale(0), scale(1), scale(2)] }
     }
 
-    /// Where a place lies.
+    /// Returns the coordinate of a quantized plane.
     #[inline(always)]
     pub fn at(&self, axis: usize, place: u8) -> S {
         at(self.origin[axis], self.scale[axis], place)
     }
 
-    /// The places of the least box around one that lies inside of the grid: minimum and maximum on each axis.
+    /// Returns the quantized planes of the least box around a box inside the grid.
+    ///
+    /// They are the minimum and the maximum on each axis.
     pub fn around(&self, aabb: &Aabb<S>) -> [[u8; 2]; 3] {
         [0, 1, 2].map(|axis| {
             let beyond = first(|place| self.at(axis, place) > aabb.min[axis]);
@@ -52,7 +58,9 @@ fn at<S: Scalar>(origin: S, scale: S, place: u8) -> S {
     origin + S::from_count(i32::from(place)) * scale
 }
 
-/// The first place that is far enough, 256 if none is: all behind one are.
+/// Returns the first plane that is far enough, or 256 if none is.
+///
+/// All planes behind a plane that is far enough are far enough.
 fn first(is_far_enough: impl Fn(u8) -> bool) -> u32 {
     let (mut low, mut high) = (0, 256);
     while low < high {
@@ -66,16 +74,18 @@ fn first(is_far_enough: impl Fn(u8) -> bool) -> u32 {
     low
 }
 
-/// The least power of two with which the grid reaches from one bound to another, but that it may be larger where the extent
-/// is subnormal; 0 if they are equal.
+/// Returns the least power of two with which a grid reaches from `min` to `max`.
+///
+/// It may be larger than the least where the extent is subnormal. It is 0 if the bounds are equal.
 fn scale<S: Scalar>(min: S, max: S) -> S {
     if min == max {
         return S::ZERO;
     }
-    // Of halves, which do not overflow: at most twice that power of two.
+    // Half of the extent, from halves of the bounds: it never overflows, and is at most 2 * power.
     let half = max * S::HALF - min * S::HALF;
     let power = S::ONE / half.inverse_power_of_two();
-    // The extent is at most four times the power, which 255 steps of a 32nd part cover: two doublings at the most.
+    // The extent is at most 4 * power. 255 steps of power / 32 cover it, so at most
+    // two doublings are needed.
     let mut scale = power * S::from_f64(1.0 / 128.0);
     for _ in 0..2 {
         if at(min, scale, 255) < max {
@@ -90,7 +100,9 @@ mod tests {
     use super::*;
     use alloc::vec::Vec;
 
-    /// Bounds in and around a grid from `low` to `high`: its ends, what lies next to them, and between.
+    /// Returns bounds in a grid from `low` to `high`.
+    ///
+    /// They are the ends of the grid, the scalars next to them, and scalars between.
     fn bounds<S: Scalar>(low: S, high: S) -> Vec<S> {
         let mut bounds: Vec<S> = [0.0, 1e-9, 0.003, 0.1, 0.25, 1.0 / 3.0, 0.5, 0.7, 0.999, 1.0]
             .map(|at| low * S::from_f64(1.0 - at) + high * S::from_f64(at))
@@ -110,7 +122,7 @@ mod tests {
             .collect()
     }
 
-    /// Every two of the bounds lie between their places.
+    /// Checks that any two of the bounds are between their quantized planes.
     fn check<S: Scalar>(low: S, high: S) {
         let bounds = bounds(low, high);
         let grid = Grid::over(&Aabb { min: [low; 3], max: [high; 3] });
@@ -120,7 +132,7 @@ mod tests {
                 let aabb = Aabb { min: [min; 3], max: [max; 3] };
                 for (axis, [near, far]) in grid.around(&aabb).into_iter().enumerate() {
                     assert!(grid.at(axis, near) <= min && max <= grid.at(axis, far), "{low:?} {high:?}");
-                    // The next places would cut something off.
+                    // The next planes inward would cut off a part of the box.
                     assert!(near == 255 || grid.at(axis, near + 1) > min);
                     assert!(far == 0 || grid.at(axis, far - 1) < max);
                 }
@@ -134,7 +146,7 @@ mod tests {
             for (low, high) in [(0.0, 1.0), (-1.0, 0.0), (-0.3, 0.7), (1.0, 3.0), (1e-7, 1.0), (-5.0, -4.9)] {
                 check(S::from_f64(low) * scale, S::from_f64(high) * scale);
             }
-            // A point, and an extent of few roundings, far from the origin.
+            // A point, and extents of a few roundings, far from the origin.
             for x in [scale, -scale, S::ZERO] {
                 check(x, x);
                 check(x, x.next_up());
@@ -157,7 +169,9 @@ mod tests {
         check_all::<f64>(&[1e-320, 1e-300, 1e300, 1e307]);
     }
 
-    /// Where nothing is lost by rounding, a box is larger by less than a 127th of the node on each side.
+    /// Checks that boxes grow by less than a 127th of the node on each side.
+    ///
+    /// Nothing is lost by rounding here.
     #[test]
     fn boxes_are_hardly_larger() {
         for extent in [1.0f32, 1.5, 1.99, 2.0, 2.01, 3.9, 254.0, 255.0, 256.0] {

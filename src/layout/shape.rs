@@ -1,4 +1,4 @@
-//! What a collapse asks of a tree's form and of its primitives, by reference.
+//! The encoding and the primitives, as a collapse that knows no types sees them.
 
 use super::collapse_cost::LeafCost;
 use super::encoding::{Encoding, Node};
@@ -7,37 +7,40 @@ use super::wide::{NO_PRIMITIVE, Reference};
 use crate::geometry::{Aabb, Scalar};
 use crate::leaf::LEAF_WIDTH;
 
-/// What the leaves of a wide tree take of the primitives.
+/// The primitives, as the leaves of a wide tree use them.
 pub trait Contents<S>: Sync {
-    /// Writes scalars of each, for primitives with these input indices, a row for each: a lane for
-    /// each primitive, NaN in the others.
+    /// Writes the operands of the primitives with these input indices.
+    ///
+    /// There is a row for each operand, and a lane for each primitive. The other lanes become NaN.
     fn put(&self, indices: &[u32], rows: &mut [[S; LEAF_WIDTH]]);
-    /// The box of the primitive with an input index.
+    /// Returns the box of the primitive with an input index.
     fn aabb(&self, index: u32) -> Aabb<S>;
-    /// PackedQuery for the primitive with an input index to be brought into the cache.
+    /// Prefetches the primitive with an input index into the cache.
     fn prefetch(&self, index: u32);
 }
 
-/// How the blocks of a wide tree are written: what a form knows, as values, so that one collapse is
-/// compiled for all.
+/// The encoding of a wide tree, as values: how its blocks are written.
+///
+/// One compiled collapse serves all encodings.
 pub struct Shape<S> {
-    /// Whether leaves are blocks with copies of their primitives' operands; else they are ranges of
-    /// slots.
+    /// Whether leaves are blocks with copies of their primitives' operands.
+    ///
+    /// If not, leaves are ranges of slots.
     pub has_leaves: bool,
-    /// How many scalars of each primitive.
+    /// The number of operands of each primitive.
     operands: usize,
-    /// What it costs to visit a leaf.
+    /// The cost of a visit to a leaf.
     pub cost: LeafCost,
-    /// Bytes of a node, and of what its place is a multiple.
+    /// The size and the alignment of a node, in bytes.
     node: (usize, usize),
     pub put_node: PutNode<S>,
 }
 
-/// Writes a node with these children at an offset.
+/// A function that writes a node with these children at an offset.
 type PutNode<S> = fn(&mut Part<'_>, usize, &[(Aabb<S>, Reference)]);
 
 impl<S: Scalar> Shape<S> {
-    /// With so many operands of each primitive.
+    /// Returns the shape of an encoding, with `operands` operands per primitive.
     pub(super) fn of<const N: usize, F: Encoding<S, N>>(operands: usize) -> Self {
         Self {
             has_leaves: F::COPIES,
@@ -45,13 +48,13 @@ impl<S: Scalar> Shape<S> {
             cost: F::leaf_cost(operands),
             node: (size_of::<F::Node>(), F::Node::ALIGN),
             put_node: |part, offset, children| {
-                // SAFETY: nodes are plain data without gaps, see `Node`.
+                // SAFETY: nodes are plain data without padding, by the contract of `Node`.
                 unsafe { part.put(offset, F::Node::new(children)) }
             },
         }
     }
 
-    /// How many bytes a block takes, and of what its place is a multiple.
+    /// Returns the size and the alignment of a block, in bytes.
     pub(super) fn extent(&self, kind: Kind) -> (usize, usize) {
         match kind {
             Kind::Node => self.node,
@@ -64,7 +67,9 @@ impl<S: Scalar> Shape<S> {
         }
     }
 
-    /// Writes a leaf: the rows of operands, NaN where there is no primitive, then the indices.
+    /// Writes a leaf: the rows of operands, then the indices.
+    ///
+    /// Operands are NaN where there is no primitive.
     pub(super) fn put_leaf(
         &self,
         part: &mut Part<'_>,
@@ -72,20 +77,20 @@ impl<S: Scalar> Shape<S> {
         indices: &[u32],
         contents: &dyn Contents<S>,
     ) {
-        // SAFETY: scalars are any bytes, and any bytes are some.
+        // SAFETY: any bytes are scalars, and scalars have no padding.
         contents.put(indices, unsafe { part.get_mut(offset, self.operands) });
         let mut places = [NO_PRIMITIVE; LEAF_WIDTH];
         places[..indices.len()].copy_from_slice(indices);
-        // SAFETY: integers are any bytes, and any bytes are some.
+        // SAFETY: integers have no padding.
         unsafe { part.put(offset + self.operands * size_of::<[S; LEAF_WIDTH]>(), places) }
     }
 }
 
-/// What there is in memory.
+/// The kind of a block.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Kind {
-    /// A node, with some of the section's children.
+    /// A node, whose children are a range of the section's children.
     Node,
-    /// A leaf, with the primitives of some slots.
+    /// A leaf, whose primitives are those of a range of slots.
     Leaf,
 }

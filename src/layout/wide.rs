@@ -1,7 +1,8 @@
-//! The wide trees: nodes of up to N children, whose boxes are tested all at once, and leaves of up to 8 primitives.
+//! Wide trees: nodes of up to N children, and leaves of up to 8 primitives.
 //!
-//! A node has rows of planes: x min, x max, y min, y max, z min, z max. The ray's sign chooses between rows of minima and of
-//! maxima, as an address. How planes and leaves are written is the tree's [`Encoding`].
+//! The boxes of a node's children are tested all at once. A node has rows of planes: x min, x max,
+//! y min, y max, z min, z max. The sign of the ray's direction chooses between the rows of minima
+//! and of maxima, as an address. The tree's [`Encoding`] defines how planes and leaves are written.
 
 use super::compact::Compact;
 use super::encoding::{Encoding, Node};
@@ -13,32 +14,34 @@ use crate::leaf::LEAF_WIDTH;
 use crate::simd::Window;
 use core::fmt;
 
-/// Where a block lies: its offset in units of 8 bytes, and bit 31 for leaves. A leaf that is no block: bit 31, its number of
-/// primitives less 1 in three bits, its first slot.
+/// A reference to a node or a leaf.
+///
+/// For a block it is the offset in units of 8 bytes, and bit 31 for leaves. For a leaf that is a
+/// range of slots it is bit 31, the number of primitives less 1 in three bits, and the first slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
 pub struct Reference(u32);
 
 impl Reference {
-    /// As numbers.
+    /// Returns the references as integers.
     #[inline(always)]
     pub(crate) fn bits(references: &[Self]) -> &[u32] {
-        // SAFETY: a reference is a transparent u32.
+        // SAFETY: `Reference` is a transparent `u32`.
         unsafe { core::slice::from_raw_parts(references.as_ptr().cast(), references.len()) }
     }
 
-    /// As numbers.
+    /// Returns the window as a window of integers.
     #[inline(always)]
     pub(crate) fn window(references: &mut Window<Self>) -> &mut Window<u32> {
-        // SAFETY: a reference is a transparent u32, and any is valid.
+        // SAFETY: `Reference` is a transparent `u32`, and any `u32` is a valid reference.
         unsafe { &mut *core::ptr::from_mut(references).cast() }
     }
 
     const LEAF: u32 = 1 << 31;
-    /// In blocks of this size, in bytes, and smaller ones every place has a reference.
+    /// The maximum size of an arena whose blocks all have a reference, in bytes.
     pub(super) const LIMIT: usize = (Self::LEAF as usize).saturating_mul(NodeArena::UNIT);
 
-    /// None yet.
+    /// A placeholder where there is no reference yet.
     pub(super) const NONE: Self = Self(0);
 
     pub(crate) fn node(offset: usize) -> Self {
@@ -49,7 +52,7 @@ impl Reference {
         Self((offset / NodeArena::UNIT) as u32 | Self::LEAF)
     }
 
-    /// The same so many bytes further on.
+    /// Returns the reference to the block that is `bytes` bytes further on.
     pub(super) fn behind(self, bytes: usize) -> Self {
         Self(self.0 + (bytes / NodeArena::UNIT) as u32)
     }
@@ -64,16 +67,16 @@ impl Reference {
         (self.0 & !Self::LEAF) as usize * NodeArena::UNIT
     }
 
-    /// Bits of a first slot.
+    /// The number of bits of a first slot.
     const SLOT_BITS: u32 = 31 - LEAF_WIDTH.ilog2();
 
-    /// A leaf of slots, if they are not too many to tell apart.
+    /// Returns the leaf of these slots, or `None` if a reference cannot hold them.
     pub(super) fn of_slots(first: u32, count: u32) -> Option<Self> {
         let is_leaf = first < 1 << Self::SLOT_BITS && (1..=LEAF_WIDTH as u32).contains(&count);
         is_leaf.then_some(Self(Self::LEAF | (count - 1) << Self::SLOT_BITS | first))
     }
 
-    /// The first slot, and how many there are.
+    /// Returns the first slot, and the number of slots.
     #[inline(always)]
     pub(super) fn slots(self) -> (usize, usize) {
         let first = self.0 & ((1 << Self::SLOT_BITS) - 1);
@@ -81,48 +84,53 @@ impl Reference {
     }
 }
 
-/// The layout for speed: a tree of nodes with up to 16 children, whose boxes are tested all at once, and of leaves of up to 8
-/// primitives, side by side if operands of them lie there. 16 is the only `N` that can be built and traced.
+/// The layout for speed: a tree of nodes with up to 16 children.
 ///
-/// At most 16 GiB. On 279,163 triangles of sponza it takes 61 bytes a triangle.
+/// The boxes of a node's children are tested all at once. Leaves hold up to 8 primitives, side
+/// by side if the leaves store operands of them. 16 is the only `N` that can be built and
+/// traced. It is the best width measured, with AVX-512 and with AVX2: see `docs/performance.md`,
+/// and `docs/decisions.md`, 5.
 ///
-/// 16 is the best width measured, with AVX-512 and with AVX2: see `docs/performance.md`, and
-/// `docs/decisions.md`, 5.
+/// A tree takes at most 16 GiB. On sponza (279,163 triangles) it takes 61 bytes per triangle.
 ///
-/// Every reference that can be reached from the root refers to a node or a leaf inside of the tree: only
-/// `layout::collapse` writes any, for blocks that it has allocated and slots that there are.
+/// Every reference that is reachable from the root refers to a node or a leaf inside the tree: only
+/// `layout::collapse` writes references, to blocks that it has allocated and to slots that exist.
 #[derive(Clone)]
 pub struct WideTree<S = f32, const N: usize = 16, F = Packed> {
     pub(super) arena: NodeArena,
     pub(super) encoding: F,
-    /// None for an empty tree.
+    /// The root, or `None` for an empty tree.
     pub(super) root: Option<Reference>,
     pub(super) aabb: Aabb<S>,
-    /// Primitives in leaves.
+    /// The number of primitives in leaves.
     pub(super) len: usize,
-    /// The same, each as often as it is in a leaf.
+    /// The number of entries in all leaves.
+    ///
+    /// A primitive counts once for each leaf that holds it.
     pub(super) references: usize,
-    /// All coordinates are below `Scalar::LARGE_AREA`.
+    /// Whether all coordinates are below `Scalar::LARGE_AREA` in absolute value.
     pub(super) is_ordinary: bool,
 }
 
-/// The layout for few bytes, where a scene outgrows the cache or the memory: a [`WideTree`] whose nodes keep their children's
-/// boxes in 8 bits a plane, rounded outward, and whose leaves are indices.
+/// The layout for few bytes: a [`WideTree`] with boxes of 8 bits per plane.
 ///
-/// On 279,163 triangles of sponza it takes 8.3 bytes a triangle, where a [`WideTree`] takes 61; all in, 44.3 with
-/// triangles that it owns, 16.3 with borrowed ones.
+/// It is for scenes that are larger than the cache or the memory. Nodes keep the boxes of their
+/// children in 8 bits per plane, rounded outward. Leaves are indices. On sponza it takes 8.3 bytes
+/// per triangle (measured: docs/decisions.md, 24), without the triangles.
 ///
 /// ```text
-/// node:    origin and scale of a grid on each axis; places of N children's planes, a byte each; N references
+/// node:    origin and scale of a grid on each axis;
+///          quantized planes of N children, a byte each; N references
 /// indices: of all primitives, 4 bytes each
 /// ```
 ///
-/// Answers are the same bits, since boxes only grow. Closest hits are found at 0.60 to 0.81 of the [`WideTree`]'s rate, any hits at 0.58
-/// to 0.71 (sponza and dragon, which still fit the cache): planes are computed from their places, and leaves
-/// fetch what they need of their primitives from where those lie. So it pays to have them in an order in which neighbours in space
-/// are neighbours in memory, as those of most files are.
+/// The answers are those of a [`WideTree`], bit for bit, because boxes only grow. Rays are slower
+/// in scenes that still fit the cache: nodes compute their planes from quantized planes, and leaves
+/// fetch operands from the primitives. So store primitives in an order in which neighbours in space
+/// are neighbours in memory, as they are in most files.
 ///
-/// At most 2^28 primitives. 16 children a node are better than 8, in time and in bytes.
+/// A tree holds at most 2^28 primitives, extra references of spatial splits included. 16 children
+/// per node are better than 8, in time and in bytes.
 ///
 /// ```
 /// use bvhkit::{Bvh, CompactTree, Triangle};
@@ -132,16 +140,17 @@ pub struct WideTree<S = f32, const N: usize = 16, F = Packed> {
 /// # Ok::<(), bvhkit::BuildError>(())
 /// ```
 ///
-/// After Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, HPG 2017.
+/// The format follows Ylitie, Karras and Laine, Efficient Incoherent Ray Traversal on GPUs Through
+/// Compressed Wide BVHs, HPG 2017.
 pub type CompactTree<S = f32, const N: usize = 16> = WideTree<S, N, Compact>;
 
-/// No path through a tree leaves more children behind.
+/// The maximum number of deferred children on any path; sizes the stack.
 pub(crate) const MAX_STACK: usize = 448;
 
-/// No primitive has this index.
+/// An index that no primitive has.
 pub(crate) const NO_PRIMITIVE: u32 = u32::MAX;
 
-/// The same nodes and leaves in the same places.
+/// Trees are equal if they have the same nodes and leaves in the same places.
 impl<S: Scalar, const N: usize, F: Encoding<S, N>> PartialEq for WideTree<S, N, F> {
     fn eq(&self, other: &Self) -> bool {
         self.root == other.root
@@ -157,50 +166,60 @@ impl<S: Scalar, const N: usize, F: Encoding<S, N>> fmt::Debug for WideTree<S, N,
     }
 }
 
-/// In bytes: rays through a larger tree are taken to wait for memory. Below lies a kitchen of 3.5 MB, where fetching ahead gains
-/// nothing on an Intel Xeon and loses on a Zen 5 machine, above are those of 13 MB and more, where it gains; what lies between was
-/// not measured.
+/// The size above which rays are taken to wait for memory, in bytes.
+///
+/// Prefetching pays off in trees of 13 MB and more, and not in small trees
+/// (measured: docs/decisions.md, 27).
 const LARGE: usize = 4 << 20;
 
 impl<S: Scalar, const N: usize, F: Encoding<S, N>> WideTree<S, N, F> {
-    /// Whether rays wait for memory, so that it pays to fetch ahead what they will need.
+    /// Returns whether rays wait for memory, so that prefetching pays off.
     #[inline(always)]
     pub(crate) fn is_large(&self) -> bool {
         self.arena.len() > LARGE
     }
 
-    /// Whether all coordinates are below `Scalar::LARGE_AREA`: then lanes may be tested.
+    /// Returns whether all coordinates are below `Scalar::LARGE_AREA`.
+    ///
+    /// If they are, leaves may be tested in lanes.
     #[inline(always)]
     pub(crate) fn is_ordinary(&self) -> bool {
         self.is_ordinary
     }
 
-    /// Scalars of each primitive that lie in its leaf, or would be gathered.
+    /// Returns the number of operands of each primitive that a leaf stores.
     #[inline(always)]
     pub(crate) fn operands(&self) -> usize {
         self.encoding.operands()
     }
 
-    /// Whether leaves have so many of each primitive, or will have them gathered.
+    /// Returns whether a leaf test gets `operands` operands of each primitive.
+    ///
+    /// Either the leaves store them, or the test gathers them.
     #[inline(always)]
     pub(crate) fn has_operands(&self, operands: usize) -> bool {
         self.encoding.has_operands(operands)
     }
 
+    /// Returns the node of a reference.
+    ///
     /// # Safety
-    /// `reference` is that of one of the tree's nodes: its root, or a child of one of them.
+    ///
+    /// `reference` is the tree's root or a child of one of its nodes, and refers to a node.
     #[inline(always)]
     pub(crate) unsafe fn node(&self, reference: Reference) -> &F::Node {
-        // SAFETY: nodes are any bytes, and one lies there, by the caller's word.
+        // SAFETY: any bytes are a node, by the contract of `Node`. The caller
+        // ensures that a node is there.
         unsafe { self.arena.get(reference.offset()) }
     }
 
-    /// The node at any place; none if there is no room for one.
+    /// Returns the node at any reference, or `None` if no node fits there.
     pub(super) fn node_at(&self, reference: Reference) -> Option<&F::Node> {
         let offset = reference.offset();
         let fits = offset.checked_add(size_of::<F::Node>())? <= self.arena.len()
             && offset.is_multiple_of(F::Node::ALIGN);
-        // SAFETY: nodes are any bytes, and these lie inside of the blocks, aligned, as was just asked.
+        // SAFETY: any bytes are a node, by the contract of `Node`. These are inside the arena and
+        // aligned, as checked above.
         fits.then(|| unsafe { self.arena.get(offset) })
     }
 }

@@ -1,17 +1,18 @@
-//! How primitives lie side by side in a leaf of the wide layouts, and what its lanes compute.
+//! The kinds of leaves of the wide layouts, and the tests that lanes compute.
 //!
 //! ```text
-//! leaf kind            the lanes compute                              left to a primitive
-//! FastLeaf             the whole test                                 -
-//! WatertightLeaf       the whole test where rounding leaves no doubt  a second look, from the operands
-//! PreciseLeaf          which triangles are out of the question        the test in f64, from the operands
-//! SphereLeaf           the whole test                                 -
-//! OneByOne             nothing                                        its `intersect`
-//! Sieved               what its author's sieve says                   its `intersect`
+//! leaf kind       the lanes compute                              left to the scalar test
+//! FastLeaf        the whole test                                 hits that may be outside the box
+//! WatertightLeaf  the whole test where rounding leaves no doubt  the same, and the cases of doubt
+//! PreciseLeaf     the triangles that are out of the question     the test in f64 of the others
+//! SphereLeaf      the whole test                                 hits that may be outside the box
+//! OneByOne        nothing                                        `intersect` of each primitive
+//! Sieved          the sieve of the primitive's author            `intersect` of the others
 //! ```
 //!
-//! The first four know all of a primitive by its operands: kernels for them are compiled in this crate, for each scalar and
-//! instruction set, whatever type the operands came from.
+//! The operands of the first four kinds are the whole primitive. So the scalar test needs the
+//! operands alone, and kernels for these kinds are compiled in this crate, for each scalar and
+//! instruction set, whatever type the operands come from.
 
 mod own;
 mod precise;
@@ -31,17 +32,17 @@ use crate::geometry::{Ray, Scalar, Slabs, max};
 use crate::simd::{Backend, Lanes};
 use alloc::vec::Vec;
 
-/// Number of primitives side by side in a leaf of the wide layouts.
+/// The number of primitives side by side in a leaf of the wide layouts.
 pub const LEAF_WIDTH: usize = 8;
 
-/// Operands up to which they are gathered where they do not lie in the leaf.
+/// The maximum number of operands that are gathered where no leaf stores them.
 pub(crate) const GATHERED: usize = 16;
 
-/// How primitives lie in a leaf of the wide layouts, and how a ray meets them there: chosen by
-/// [`Intersect::Leaf`](crate::Intersect::Leaf). Sealed.
+/// A kind of leaf of the wide layouts: its content and its test.
 ///
-/// [`OneByOne`] asks each primitive by itself; [`Sieved`] asks those that a [`Sieve`] in lanes lets through. The leaves of
-/// triangles and spheres are this crate's.
+/// The trait is sealed. [`Intersect::Leaf`](crate::Intersect::Leaf) chooses the kind. [`OneByOne`]
+/// tests each primitive by itself. [`Sieved`] tests the primitives that a [`Sieve`] in lanes lets
+/// through. The leaves of triangles and spheres are this crate's.
 pub trait Leaf<S: Scalar, T>: sealed::LeafKind<S, T> {}
 
 impl<S: Scalar, T, K: sealed::LeafKind<S, T>> Leaf<S, T> for K {}
@@ -49,29 +50,37 @@ impl<S: Scalar, T, K: sealed::LeafKind<S, T>> Leaf<S, T> for K {}
 pub(crate) mod sealed {
     use super::*;
 
-    /// What this crate knows of a kind of leaf.
+    /// The private part of a kind of leaf.
     pub trait LeafKind<S: Scalar, T>: 'static {
-        /// Scalars of each primitive that lie in the leaf.
+        /// The number of scalars of each primitive in the leaf.
         const OPERANDS: usize;
-        /// Whether operands say all of a primitive: then it is never asked.
+        /// Whether the operands are the whole primitive.
+        ///
+        /// If they are, `intersect` is never called.
         const IS_SETTLED_IN_LANES: bool;
-        /// Which of the kernels that are settled in lanes.
+        /// The kernel, for kinds that are settled in lanes.
         const KERNEL: Kernel = Kernel::Fast;
 
-        /// The payload of a hit with these details; none where primitives are asked.
+        /// Returns the payload of a hit with these details.
+        ///
+        /// Returns `None` for kinds whose primitives are tested by `intersect`.
         #[inline(always)]
         fn payload(_details: [S; 3]) -> Option<T> {
             None
         }
 
-        /// Bits of the lanes whose primitives a ray may hit, of those that there are.
+        /// Returns a bit for each lane whose primitive the ray may hit.
+        ///
+        /// The bits of lanes without a primitive do not count.
         #[inline(always)]
         fn candidates(_backend: Backend, _rows: &[[S; LEAF_WIDTH]], _ray: &Ray<S>) -> u32 {
             u32::MAX
         }
     }
 
-    /// Kernels that know all of a primitive by its operands, in the order of their tables.
+    /// The kernels of leaves whose operands are the whole primitives.
+    ///
+    /// The order is that of the kernels' tables.
     #[derive(Clone, Copy)]
     pub enum Kernel {
         Fast,
@@ -81,19 +90,21 @@ pub(crate) mod sealed {
     }
 }
 
-/// The test of a leaf whose operands say all of its primitives.
+/// The test of a leaf whose operands are the whole primitives.
 pub(crate) trait LaneTest<S: Scalar>: 'static {
-    /// Scalars of each primitive.
+    /// The number of scalars of each primitive.
     const OPERANDS: usize;
-    /// What is computed of a ray once, at the first leaf that it meets.
+    /// The values that are computed once per ray, at the first leaf that it meets.
     type Frame: Copy;
 
     fn frame(ray: &Ray<S>, slabs: &Slabs<S>) -> Self::Frame;
 
-    /// Whether lanes may be tested with this ray, in a tree whose coordinates are below `Scalar::LARGE_AREA`.
+    /// Returns whether lanes may be tested with this ray.
+    ///
+    /// The answer is for trees whose coordinates are below `Scalar::LARGE_AREA`.
     fn suits(ray: &Ray<S>) -> bool;
 
-    /// The test of all lanes, for hits up to `limit`.
+    /// Tests all lanes, for hits up to `limit`.
     fn test<L: Lanes<S>>(
         operands: &Operands<'_, S, L>,
         ray: &Ray<S>,
@@ -101,11 +112,11 @@ pub(crate) trait LaneTest<S: Scalar>: 'static {
         limit: S,
     ) -> LaneHits<L>;
 
-    /// The test of one lane by itself: t, as `primitive::accept` says, and details.
+    /// Tests one lane by itself: returns t, as `primitive::accept` does, and details.
     fn one(operands: &[S], ray: &Ray<S>, slabs: &Slabs<S>) -> Option<(S, [S; 3])>;
 }
 
-/// The operands of one lane, and zeros behind them.
+/// Returns the operands of one lane, and zeros behind them.
 pub(crate) fn operands_of<S: Scalar>(rows: &[[S; LEAF_WIDTH]], lane: usize) -> [S; GATHERED] {
     let mut operands = [S::ZERO; GATHERED];
     for (operand, row) in operands.iter_mut().zip(rows) {
@@ -114,20 +125,20 @@ pub(crate) fn operands_of<S: Scalar>(rows: &[[S; LEAF_WIDTH]], lane: usize) -> [
     operands
 }
 
-/// What was found in a leaf's lanes.
+/// The hits in the lanes of a leaf.
 #[derive(Clone, Copy)]
 pub(crate) struct LaneHits<L> {
-    /// A bit for each lane that is hit at its `t`, as `primitive::accept` would say.
+    /// A bit for each lane that is hit at its `t`, by the rule of `primitive::accept`.
     pub settled: u32,
-    /// A bit for each lane that has to be tested by itself.
+    /// A bit for each lane that the scalar test has to decide.
     pub undecided: u32,
     pub t: L,
-    /// What the payload is made of.
+    /// The values from which the payload is computed.
     pub details: [L; 3],
 }
 
 impl<L> LaneHits<L> {
-    /// Nothing is hit for sure.
+    /// Returns hits of which none is settled.
     #[inline(always)]
     fn undecided<S: Scalar>(undecided: u32, operands: &Operands<'_, S, L>) -> Self
     where
@@ -138,18 +149,25 @@ impl<L> LaneHits<L> {
     }
 }
 
-/// Whether the ray does not look behind its origin, where the padding of boxes has the other sign, and no sum or product of
-/// two coordinates in its frame overflows: only lanes without a primitive are NaN. (In `f64` products overflow sooner, but
-/// then t is NaN in lanes as it is for a single triangle, and nothing is hit.)
+/// Returns whether lanes of triangles may be tested with this ray.
+///
+/// The ray does not look behind its origin, where the padding of boxes has the other sign. And no
+/// sum or product of two coordinates in its frame overflows, so only lanes without a primitive are
+/// NaN. (In `f64`, products overflow sooner. Then t is NaN in the lanes, as it is for a single
+/// triangle, and nothing is hit.)
 #[inline(always)]
 fn is_ahead_and_in_range<S: Scalar>(ray: &Ray<S>) -> bool {
     let [x, y, z] = ray.origin;
     ray.t_min >= S::ZERO && max(max(x.abs(), y.abs()), z.abs()) < S::LARGE_AREA
 }
 
-/// What writes the operands of primitives, by their indices in the input: late-bound, for kernels know no primitive's type.
+/// A list of primitives that writes their operands, by their indices in the input.
+///
+/// The call is late-bound, because kernels know no primitive's type.
 pub trait PutOperands<S> {
-    /// A row for each operand, a lane for each primitive, NaN in the lanes behind.
+    /// Writes a row for each operand, with a lane for each primitive.
+    ///
+    /// The lanes behind the last primitive become NaN.
     fn put_rows(&self, indices: &[u32], rows: &mut [[S; LEAF_WIDTH]]);
 }
 
@@ -158,8 +176,9 @@ pub(crate) struct Primitives<'a, P>(pub &'a [P]);
 
 impl<P: crate::Intersect> PutOperands<P::Scalar> for Primitives<'_, P> {
     fn put_rows(&self, indices: &[u32], rows: &mut [[P::Scalar; LEAF_WIDTH]]) {
-        // Of a size that the compiler knows, so that few operands stay in registers on their way: through memory, where they are
-        // written in parts of one size and read in parts of another, a quick build took a fifteenth longer.
+        // The size of this array is known to the compiler, so few operands stay in registers.
+        // Through memory, operands are written in parts of one size and read in parts of another: a
+        // quick build takes a fifteenth longer.
         let (mut few, mut many) = ([P::Scalar::ZERO; 16], Vec::new());
         let operands = <P::Leaf as sealed::LeafKind<_, P::Payload>>::OPERANDS;
         let values = few.get_mut(..operands).unwrap_or_else(|| {

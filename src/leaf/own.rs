@@ -1,4 +1,4 @@
-//! Leaves whose primitives are asked: those of users, and of this crate's boxes.
+//! Leaves that call `intersect`: those of users' primitives and of boxes.
 
 use super::sealed::LeafKind;
 use super::{LEAF_WIDTH, Operands};
@@ -6,7 +6,7 @@ use crate::geometry::{Ray, Scalar};
 use crate::simd::{Backend, Isa, Kernel, Lanes};
 use core::marker::PhantomData;
 
-/// Each primitive by itself, in the order of the leaf.
+/// A leaf that tests each primitive by itself, in the order of the leaf.
 #[derive(Clone, Copy, Debug)]
 pub struct OneByOne;
 
@@ -15,27 +15,31 @@ impl<S: Scalar, T> LeafKind<S, T> for OneByOne {
     const IS_SETTLED_IN_LANES: bool = false;
 }
 
-/// A test in lanes that says which primitives of a leaf are worth asking.
+/// A test in lanes that selects the primitives of a leaf that a ray may hit.
 ///
-/// Which scalars of a primitive it needs, [`Intersect::put_operands`](crate::Intersect::put_operands) writes; which lanes a ray
-/// may hit, [`candidates`](Self::candidates) says. Those are asked one by one, so that answers are the same with and without
-/// a sieve. `examples/own_leaf.rs` is a whole program.
+/// [`Intersect::put_operands`](crate::Intersect::put_operands) writes the scalars of a primitive
+/// that the sieve needs. [`candidates`](Self::candidates) selects the lanes that a ray may hit. The
+/// primitives of these lanes are tested one by one, so answers are the same with and without a
+/// sieve. `examples/own_leaf.rs` is a whole program.
 ///
-/// It is for speed alone, and all primitives are asked where it cannot be had: in the binary [`Tree`](crate::Tree), in a
-/// [`CompactTree`](crate::CompactTree) if there are more than 16 operands, and where coordinates are beyond 1e18 (`f32`). It is
-/// asked about rays of any interval, with a `t_min` below 0 too.
+/// A sieve is for speed alone. All primitives are tested where there can be no sieve: in the binary
+/// [`Tree`](crate::Tree), in a [`CompactTree`](crate::CompactTree) if there are more than 16
+/// operands, and where coordinates are beyond 1e18 (`f32`). The sieve gets rays of any interval,
+/// with a `t_min` below 0 too.
 pub trait Sieve<S: Scalar>: 'static {
-    /// How many scalars of each primitive lie in the leaf.
+    /// The number of scalars of each primitive in the leaf.
     const OPERANDS: usize;
 
-    /// Returns the lanes whose primitives the ray may hit: all that
-    /// [`Intersect::intersect`](crate::Intersect::intersect) says are hit, and as few others as is quickly found. Lanes
-    /// without a primitive hold NaN; what is said of them does not count. `ray.t_max` is the closest hit so far, as in
-    /// `intersect`.
+    /// Returns the lanes whose primitives the ray may hit.
+    ///
+    /// These are all lanes for which [`Intersect::intersect`](crate::Intersect::intersect)
+    /// returns a hit, and as few others as can be found quickly. Lanes without a primitive hold
+    /// NaN, and their values in the mask do not count. `ray.t_max` is the t of the closest hit so
+    /// far, as in `intersect`.
     fn candidates<L: Lanes<S>>(operands: &Operands<'_, S, L>, ray: &Ray<S>) -> L::Mask;
 }
 
-/// Primitives side by side, of which those are asked that the sieve `T` lets through.
+/// A leaf that tests the primitives that the sieve `T` lets through.
 #[derive(Clone, Copy, Debug)]
 pub struct Sieved<T>(PhantomData<T>);
 

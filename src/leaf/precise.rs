@@ -1,4 +1,4 @@
-//! Triangles whose test is in `f64`, sieved in lanes of `f32`.
+//! Leaves of triangles that are tested in `f64`, after a sieve in lanes of `f32`.
 
 use super::sealed::{Kernel, LeafKind};
 use super::triangles::{EdgeTests, TriangleFrame, barycentrics, details, largest, triangle};
@@ -7,8 +7,10 @@ use crate::geometry::{Ray, Slabs};
 use crate::primitive::{Barycentrics, Precise, accept};
 use crate::simd::Lanes;
 
-/// The leaf of [`Precise`] triangles: nine coordinates each, by which those are left out whose sides
-/// are beyond doubt in `f32` already.
+/// The leaf of [`Precise`] triangles: nine coordinates each.
+///
+/// Lanes of `f32` leave out the triangles that the ray misses: the signs of two of their
+/// weights differ beyond doubt.
 #[derive(Clone, Copy, Debug)]
 pub struct PreciseLeaf;
 
@@ -37,10 +39,14 @@ impl LaneTest<f32> for PreciseLeaf {
         is_ahead_and_in_range(ray)
     }
 
-    /// A weight is a difference of two products of places in the frame, each of them off by less than 2 epsilon of what
-    /// it would be if all signs were plus: so the weight is, by less than 16 epsilon of the largest such product. A slope, a
-    /// place or a product that underflows is off by more than its epsilons, but by less than one of the smallest normal number,
-    /// which is added to each.
+    /// Leaves out the lanes that the ray misses beyond doubt.
+    ///
+    /// A weight is a difference of two products of coordinates in the ray's frame. The error of
+    /// each coordinate is less than 2 epsilon of the value that the coordinate would have if
+    /// all signs were plus. So the error of the weight is less than 16 epsilon of the largest
+    /// such product. A slope, a coordinate or a product that underflows has an error of more
+    /// than its epsilons, but of less than the smallest normal number. The test adds this
+    /// number to each of them.
     #[inline(always)]
     fn test<L: Lanes<f32>>(
         operands: &Operands<'_, f32, L>,

@@ -4,7 +4,7 @@ use super::LEAF_WIDTH;
 use crate::geometry::Scalar;
 use crate::simd::Lanes;
 
-/// The scalars of a leaf's primitives: a vector for each operand, a lane for each primitive.
+/// The operands of a leaf: a vector for each operand, a lane for each primitive.
 #[derive(Clone, Copy)]
 pub struct Operands<'a, S: Scalar, L: Lanes<S>> {
     isa: L::Isa,
@@ -18,16 +18,17 @@ impl<'a, S: Scalar, L: Lanes<S>> Operands<'a, S, L> {
         Self { isa, rows }
     }
 
-    /// One operand of all the leaf's primitives.
+    /// Returns one operand of all the leaf's primitives.
     ///
     /// # Panics
+    ///
     /// If the leaf has fewer operands.
     #[inline(always)]
     pub fn get(&self, operand: usize) -> L {
         L::from_slice(self.isa, &self.rows[operand])
     }
 
-    /// A scalar, the same in all lanes.
+    /// Returns a vector with a scalar in all lanes.
     #[inline(always)]
     pub fn splat(&self, scalar: S) -> L {
         L::splat(self.isa, scalar)

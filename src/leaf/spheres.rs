@@ -1,4 +1,4 @@
-//! Spheres side by side in a leaf, tested in lanes.
+//! Leaves of spheres side by side, tested in lanes.
 
 use super::sealed::{Kernel, LeafKind};
 use super::{LaneHits, LaneTest, Operands};
@@ -6,7 +6,7 @@ use crate::geometry::{Ray, Scalar, Slabs};
 use crate::primitive::{Sphere, accept};
 use crate::simd::Lanes;
 
-/// The leaf of [`Sphere`]s: center and radius of each.
+/// The leaf of [`Sphere`]s: the center and the radius of each.
 #[derive(Clone, Copy, Debug)]
 pub struct SphereLeaf;
 
@@ -30,7 +30,9 @@ impl<S: Scalar> LaneTest<S> for SphereLeaf {
         *slabs
     }
 
-    /// The padding of boxes has the other sign behind the origin.
+    /// Returns whether the ray does not look behind its origin.
+    ///
+    /// Behind the origin, the padding of boxes has the other sign.
     #[inline(always)]
     fn suits(ray: &Ray<S>) -> bool {
         ray.t_min >= S::ZERO
@@ -58,7 +60,7 @@ impl<S: Scalar> LaneTest<S> for SphereLeaf {
 
 /// The first half of [`Sphere::intersect`] in lanes, bit for bit.
 struct Quadratics<S: Scalar, L: Lanes<S>> {
-    /// The ray's origin relative to the center.
+    /// The ray's origin relative to the centers.
     to_origin: [L; 3],
     a: S,
     b: L,
@@ -80,13 +82,16 @@ impl<S: Scalar, L: Lanes<S>> Quadratics<S, L> {
         let (px, py, pz) = (x + dx * step, y + dy * step, z + dz * step);
         let radius = operands.get(3);
         let discriminant = radius * radius - (px * px + py * py + pz * pz);
-        // A radius is no smaller than zero, nor is the product; NaN is no hit.
+        // A radius is never below zero, nor is its square. If `a` is out of range, no finite
+        // discriminant is a hit. NaN is never a hit.
         let least = if a.is_normal_number() { S::ZERO } else { S::INFINITY };
         Self { to_origin: [x, y, z], a, b, discriminant, is_hit: splat(least).le(discriminant) }
     }
 
-    /// What is hit up to `limit` where the ray's entry into the sphere's box, here without its rounding outward, proves
-    /// that t need not be raised; the others are to be asked.
+    /// Returns the hits up to `limit`.
+    ///
+    /// A lane is settled if the ray's entry into the sphere's box proves that t need not be raised.
+    /// Here the box is not rounded outward. The scalar test decides the other lanes.
     #[inline(always)]
     fn hits(&self, operands: &Operands<'_, S, L>, ray: &Ray<S>, slabs: &Slabs<S>, limit: S) -> LaneHits<L> {
         let splat = |x: S| operands.splat(x);
@@ -110,7 +115,7 @@ impl<S: Scalar, L: Lanes<S>> Quadratics<S, L> {
     }
 }
 
-/// Where the ray enters the slabs of the spheres' boxes across an axis, and leaves them.
+/// Returns where the ray enters and leaves the slabs of the boxes, on one axis.
 #[inline(always)]
 fn slab<S: Scalar, L: Lanes<S>>(operands: &Operands<'_, S, L>, slabs: &Slabs<S>, axis: usize) -> [L; 2] {
     let (center, radius, origin) = (operands.get(axis), operands.get(3), operands.splat(slabs.origin[axis]));

@@ -1,11 +1,11 @@
-//! The test of a leaf's lanes as a function of its own, for kernels that call it late-bound.
+//! The lane test of a leaf as a function of its own, for late-bound calls.
 
 use super::{LEAF_WIDTH, LaneTest, Operands};
 use crate::geometry::{Ray, Scalar};
 use crate::simd::{Backend, Isa, Kernel, KernelLanes};
 use core::marker::PhantomData;
 
-/// What was found in a leaf's lanes, in memory.
+/// The hits in the lanes of a leaf, stored in memory.
 pub(crate) struct StoredHits<S> {
     pub settled: u32,
     pub undecided: u32,
@@ -20,7 +20,7 @@ impl<S: Scalar> StoredHits<S> {
     }
 }
 
-/// The test of some rows with a ray, for hits up to its end.
+/// The test of a leaf's rows with a ray, for hits up to the ray's end.
 pub(crate) struct TestLanes<'q, S, T: LaneTest<S>>
 where
     S: Scalar,

@@ -1,5 +1,7 @@
-//! Triangles side by side in a leaf, tested in lanes: each lane does what `sheared` and `watertight` in
-//! `primitive::triangle` do for one, and `primitive::accept` after them.
+//! Leaves of triangles side by side, tested in lanes.
+//!
+//! Each lane does the same as `sheared` and `watertight` in `primitive::triangle` do for one
+//! triangle, and as `primitive::accept` does after them.
 
 use super::sealed::{Kernel, LeafKind};
 use super::{LaneHits, LaneTest, Operands, is_ahead_and_in_range};
@@ -8,13 +10,17 @@ use crate::primitive::{Barycentrics, DOUBT, Fast, Triangle, Watertight, accept};
 use crate::simd::Lanes;
 use core::marker::PhantomData;
 
-/// The leaf of [`Fast`] triangles: nine coordinates each, which are all that the test needs. For a type whose `intersect` and
-/// box are those of [`Fast`]: in wide trees neither is called.
+/// The leaf of [`Fast`] triangles: nine coordinates each.
+///
+/// The test needs nothing else. The leaf is for types whose `intersect` and box are those of
+/// [`Fast`]: queries of wide trees call neither.
 #[derive(Clone, Copy, Debug)]
 pub struct FastLeaf;
 
-/// The leaf of [`Watertight`] triangles: nine coordinates each, which are all that the test needs. For a type whose `intersect`
-/// and box are those of [`Watertight`]: in wide trees neither is called.
+/// The leaf of [`Watertight`] triangles: nine coordinates each.
+///
+/// The test needs nothing else. The leaf is for types whose `intersect` and box are those of
+/// [`Watertight`]: queries of wide trees call neither.
 #[derive(Clone, Copy, Debug)]
 pub struct WatertightLeaf;
 
@@ -87,7 +93,7 @@ impl<S: Scalar> LaneTest<S> for WatertightLeaf {
         is_ahead_and_in_range(ray)
     }
 
-    /// Looks twice where rounding leaves something open.
+    /// Tests all lanes, and leaves those undecided where rounding leaves a doubt.
     #[inline(always)]
     fn test<L: Lanes<S>>(
         operands: &Operands<'_, S, L>,
@@ -107,11 +113,11 @@ impl<S: Scalar> LaneTest<S> for WatertightLeaf {
     }
 }
 
-/// What triangles of all modes need of a ray.
+/// The values of a ray that the tests of triangles in all modes need.
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleFrame<S> {
     pub(super) shear: RayFrame<S>,
-    /// Of the slabs, on the frame's axes.
+    /// The inverse direction of the slabs, on the axes of the frame.
     inv_near: [S; 3],
     inv_far: [S; 3],
 }
@@ -127,57 +133,61 @@ impl<S: Scalar> TriangleFrame<S> {
     }
 }
 
-/// The triangle with these coordinates.
+/// Returns the triangle with these coordinates.
 pub(super) fn triangle<S: Scalar>(operands: &[S]) -> Triangle<S> {
     let corner = |k: usize| [operands[3 * k], operands[3 * k + 1], operands[3 * k + 2]];
     Triangle { a: corner(0), b: corner(1), c: corner(2) }
 }
 
-/// A hit's payload as details, from which [`barycentrics`] makes the same bits.
+/// Returns a payload as details, from which [`barycentrics`] makes the same bits.
 pub(super) fn details<S: Scalar>((t, Barycentrics { u, v }): (S, Barycentrics<S>)) -> (S, [S; 3]) {
     (t, [u, v, S::ONE])
 }
 
-/// The weights of the second and the third corner, times the area; and the area.
+/// Returns the payload of a hit with these details.
+///
+/// They are the weights of the second and the third corner, times the area, and the area.
 #[inline(always)]
 pub(super) fn barycentrics<S: Scalar>([b, c, area]: [S; 3]) -> Barycentrics<S> {
     Barycentrics { u: b / area, v: c / area }
 }
 
-/// Where a ray enters the slab between the corners' places on an axis.
+/// Returns where a ray enters the slab between the corners on an axis.
 #[inline(always)]
 fn first<S: Scalar, L: Lanes<S>>(operands: &Operands<'_, S, L>, [p, q, r]: [L; 3], inv: S) -> L {
     let inv = operands.splat(inv);
     (p * inv).min(q * inv).min(r * inv)
 }
 
-/// Where it leaves it.
+/// Returns where a ray leaves the slab between the corners on an axis.
 #[inline(always)]
 fn last<S: Scalar, L: Lanes<S>>(operands: &Operands<'_, S, L>, [p, q, r]: [L; 3], inv: S) -> L {
     let inv = operands.splat(inv);
     (p * inv).max(q * inv).max(r * inv)
 }
 
-/// In size.
+/// Returns the largest of three absolute values, in each lane.
 #[inline(always)]
 pub(super) fn largest<S: Scalar, L: Lanes<S>>([p, q, r]: [L; 3]) -> L {
     p.abs().max(q.abs()).max(r.abs())
 }
 
-/// Neither so large nor so small that a part of it may have left the range.
+/// Returns the lanes where no term of `x` can have left the scalar's range.
+///
+/// There, `x` is neither too large nor too small for that.
 #[inline(always)]
 fn is_within<S: Scalar, L: Lanes<S>>(operands: &Operands<'_, S, L>, x: L, large: S) -> L::Mask {
     let x = x.abs();
     operands.splat(S::ONE / large).lt(x) & x.lt(operands.splat(large))
 }
 
-/// `sheared` in lanes.
+/// The edge test of `sheared`, in lanes.
 pub(super) struct EdgeTests<S: Scalar, L: Lanes<S>> {
-    /// The corners' places relative to the origin: unpermuted differences, on the frame's axes.
+    /// The corners relative to the origin: plain differences, on the frame's axes.
     pub x: [L; 3],
     pub y: [L; 3],
     pub z: [L; 3],
-    /// The first and second coordinates in the frame.
+    /// The first and the second coordinates of the corners in the frame.
     frame: [[L; 3]; 2],
     pub weights: [L; 3],
     inside: L::Mask,
@@ -220,8 +230,11 @@ impl<S: Scalar, L: Lanes<S>> EdgeTests<S, L> {
         ]
     }
 
-    /// What is hit up to `limit`: those of `sure` whose own boxes prove that t need not be raised, and what is left
-    /// of those inside, to be asked.
+    /// Returns the hits up to `limit`.
+    ///
+    /// A lane of `sure` with t in reach is settled if the triangle's own box proves that t need not
+    /// be raised. The scalar test decides the other lanes of `sure` with t in reach, and the lanes
+    /// inside that are not in `sure`.
     #[inline(always)]
     fn hits(
         &self,
@@ -235,7 +248,7 @@ impl<S: Scalar, L: Lanes<S>> EdgeTests<S, L> {
         let (area, volume) = (a + b + c, a * z0 + b * z1 + c * z2);
         let zero = operands.splat(S::ZERO);
         let t = volume / area / operands.splat(frame.shear.forward) + zero;
-        // No infinity.
+        // An infinite t is no hit.
         let limit = if limit < S::MAX { limit } else { S::MAX };
         let in_reach = operands.splat(ray.t_min).le(t) & t.le(operands.splat(limit));
         let unsure = self.inside & !sure;
@@ -249,15 +262,19 @@ impl<S: Scalar, L: Lanes<S>> EdgeTests<S, L> {
         LaneHits { settled: sure, undecided: unsure, t, details: [b, c, area] }
     }
 
-    /// Whether t is at or behind the ray's entry into the box of the corners, and the box is met: then the same is
-    /// true of the triangle's own box, which contains it, and `primitive::accept` leaves t as it is.
+    /// Returns the lanes where t is not before the ray's entry into the corners' box.
     ///
-    /// A difference from a bound is the least or the greatest of those from the corners, and so is its product with
-    /// the inverse, since rounding is monotone. A product is NaN where a corner is level with the origin on an axis
-    /// along which the ray does not move: then the axis is left out, as the slab test does, or the box seems smaller.
+    /// In these lanes the ray meets the box. The triangle's own box contains the corners' box, so
+    /// the same is true of the own box, and `primitive::accept` leaves t as it is.
     ///
-    /// Refused: entries in one half of a vector and exits in the other, which is half of the operations with AVX-512 (no
-    /// quicker, and with AVX2 1 to 2 % slower).
+    /// The difference between a bound and the origin is the least or the greatest of the
+    /// differences between the corners and the origin. So is its product with the inverse,
+    /// because rounding is monotone. A product is NaN where a corner is level with the origin on
+    /// an axis along which the ray does not move. Then the axis is left out, as in the slab test,
+    /// or the box seems smaller.
+    ///
+    /// Refused: entries in one half of a vector, and exits in the other. With AVX-512 this takes
+    /// half of the operations, but is no quicker. With AVX2 it is 1 to 2 % slower.
     #[inline(always)]
     fn is_past_its_box(
         &self,
@@ -277,7 +294,9 @@ impl<S: Scalar, L: Lanes<S>> EdgeTests<S, L> {
         near.le(t) & near.le(far) & operands.splat(ray.t_min).le(far)
     }
 
-    /// Those inside of which rounding leaves nothing open: as in `primitive::triangle::watertight`.
+    /// Returns the lanes inside whose answer rounding cannot change.
+    ///
+    /// The rule is that of `primitive::triangle::watertight`.
     #[inline(always)]
     fn settled(&self, operands: &Operands<'_, S, L>) -> L::Mask {
         let ([a, b, c], [z0, z1, z2]) = (self.weights, self.z);

@@ -1,4 +1,4 @@
-//! The box as a primitive: its surface is what rays hit.
+//! The box as a primitive: rays hit its surface.
 
 use super::{Intersect, Primitive};
 use crate::geometry::{Aabb, Ray, Scalar, max, min};
@@ -17,7 +17,10 @@ impl<S: Scalar> Intersect for Aabb<S> {
     type Payload = ();
     type Leaf = OneByOne;
 
-    /// A ray from inside hits the surface on the way out; a ray in the plane of a face hits its edge.
+    /// Returns the t of the first hit with the surface in the ray's interval.
+    ///
+    /// A ray from inside hits the surface on the way out. A ray in the plane of a face hits the
+    /// edge of that face.
     #[inline(always)]
     fn intersect(&self, ray: &Ray<S>) -> Option<(S, ())> {
         let (mut near, mut far) = (S::NEG_INFINITY, S::INFINITY);
@@ -27,7 +30,8 @@ impl<S: Scalar> Intersect for Aabb<S> {
             if inv < S::ZERO {
                 (first, last) = (last, first);
             }
-            // 0 * infinity, a plane through the origin along it, is NaN and left out.
+            // A plane that is parallel to the ray and contains its origin gives 0 * infinity. This
+            // is NaN, which `max` and `min` leave out.
             near = max((first - ray.origin[axis]) * inv, near);
             far = min((last - ray.origin[axis]) * inv, far);
         }

@@ -1,31 +1,35 @@
-//! What counts as a hit: one rule for the tree, the naive loop, and every query.
+//! The rule that accepts hits: one for the tree, the naive loop and every query.
 
 use super::Intersect;
 use crate::geometry::{Ray, Scalar, Slabs, max};
 
-/// The t and the payload of the ray's hit with `primitive`, if it has one in the ray's interval, whose end a query narrows to
-/// the closest hit so far. `slabs` are the ray's.
+/// Returns t and the payload of the ray's hit with `primitive`, if there is one.
+///
+/// The hit must be in the ray's interval. A query narrows the end of that interval to the closest
+/// hit so far. `slabs` must be those of `ray`.
 ///
 /// # The own-box rule
 ///
-/// The primitive's test and the slab test round differently, so a hit may lie a few roundings
-/// before the boxes that lead to it: a tree that prunes by t would lose what the naive loop finds.
-/// Therefore a hit's t is raised to the ray's entry into the primitive's *own* box, and a primitive
-/// whose own box the ray misses is not hit. The naive loop does the same; then both agree bit for
-/// bit, whatever the primitive's test computes:
+/// The primitive's test and the slab test round differently, so a hit may be a few roundings before
+/// the boxes that lead to it. A tree that prunes by t would lose such a hit, and the naive loop
+/// would find it. Therefore a hit's t is raised to the ray's entry into the primitive's *own* box,
+/// and a primitive is not hit if the ray misses its own box. The naive loop does the same. Then
+/// both agree bit for bit, whatever the primitive's test computes:
 ///
-/// Let h be a hit accepted with t >= near(own box). Every ancestor's box contains the own box, so by
-/// the monotony of the slab test (see `Slabs`) near(ancestor) <= near(own box) <= t and
-/// far(ancestor) >= far(own box) >= near(own box), t_min. An ancestor is pruned only if near > far, far < t_min
-/// or near > t_max. The first two are excluded; the third too as long as t_max >= t, which holds
-/// until a hit with a smaller t has been found. So the hit with the smallest (t, index) is always
-/// reached, and being the smallest by a total order, it does not depend on the order of visits.
+/// Let h be a hit accepted with t >= near(own box). Every ancestor's box contains the own box. The
+/// slab test is monotone (see `Slabs`), so near(ancestor) <= near(own box) <= t and
+/// far(ancestor) >= far(own box) >= near(own box), t_min. An ancestor is pruned only if near > far,
+/// far < t_min or near > t_max. The first two are excluded. The third is excluded as long as
+/// t_max >= t, which holds until a hit with a smaller t is found. So the hit with the smallest
+/// (t, index) is always reached. It is the smallest by a total order, so it does not depend on the
+/// order of visits.
 ///
-/// Raising t, instead of rejecting hits outside the own box's interval, loses nothing where the box
-/// is flat and its interval a single rounding wide. A t beyond the far side prunes nothing and is
-/// left alone; only if the whole box ends before t_min is the primitive not hit.
+/// Where the own box is flat and its interval is a single rounding wide, rejecting hits outside of
+/// that interval would lose hits. Raising t loses none. A t beyond the far side prunes nothing and
+/// stays as it is. If the whole box ends before t_min, the primitive is not hit.
 ///
-/// A NaN or infinite t is no hit; -0 becomes +0. The primitive is valid, or the caller makes nothing of the answer.
+/// A NaN or infinite t is no hit, and -0 becomes +0. Either the primitive is valid, or the caller
+/// discards the answer.
 #[inline(always)]
 pub(crate) fn accept<P: Intersect>(
     primitive: &P,
@@ -33,7 +37,8 @@ pub(crate) fn accept<P: Intersect>(
     slabs: &Slabs<P::Scalar>,
 ) -> Option<(P::Scalar, P::Payload)> {
     let (t, payload) = primitive.intersect(ray)?;
-    // Most hits end here, and every NaN; raising t would not bring them back.
+    // Most hits end here, and every NaN. A t outside the interval is no hit, even if raising it
+    // would move it inside.
     if !ray.includes(t) {
         return None;
     }
@@ -41,7 +46,7 @@ pub(crate) fn accept<P: Intersect>(
     (t <= ray.t_max && t.is_finite()).then_some((t, payload))
 }
 
-/// Whether a hit at (`t`, `index`) comes before another: by t, equal ones by index.
+/// Returns whether a hit at (`t`, `index`) comes before another: by t, then index.
 #[inline(always)]
 pub(crate) fn precedes<S: Scalar, I: Ord>(t: S, index: I, other_t: S, other_index: I) -> bool {
     t < other_t || (t == other_t && index < other_index)

@@ -1,4 +1,4 @@
-//! What a tree can hold: anything with bounds; and what a ray can hit.
+//! Primitives: shapes with bounds, and those of them that rays can hit.
 
 mod aabb;
 mod accept;
@@ -19,7 +19,9 @@ use crate::leaf::Leaf;
 use alloc::boxed::Box;
 use alloc::sync::Arc;
 
-/// Something with a bounding box: all that a tree needs to be built. `Sync`, for builds read it on several threads.
+/// A shape with a bounding box, which is all that a tree needs to be built.
+///
+/// Primitives are `Sync`, since builds read them on several threads.
 ///
 /// ```
 /// use bvhkit::{Aabb, Primitive};
@@ -34,18 +36,20 @@ use alloc::sync::Arc;
 /// }
 /// ```
 pub trait Primitive: Sync {
-    /// `f32` or `f64`: the scalar of its coordinates, and of the rays that it meets.
+    /// The scalar of its coordinates and of the rays that it meets: `f32` or `f64`.
     type Scalar: Scalar;
 
-    /// The smallest box known to contain the primitive.
+    /// Returns the smallest box known to contain the primitive.
     ///
-    /// Called several times and expected to give the same answer each time. A box with a bound
-    /// that is NaN or infinite, or with a minimum above its maximum, makes the primitive invalid:
-    /// see [`OnInvalid`](crate::OnInvalid).
+    /// It is called several times and must give the same answer each time. If a bound is NaN or
+    /// infinite, or a minimum exceeds its maximum, the primitive is invalid: see
+    /// [`OnInvalid`](crate::OnInvalid).
     fn aabb(&self) -> Aabb<Self::Scalar>;
 
-    /// [`aabb`](Self::aabb) of a primitive that is known to be valid, to the bit: each hit asks for it. For those
-    /// of this crate that spend time on finding out whether they are.
+    /// Returns the bits of [`aabb`](Self::aabb), for a primitive known to be valid.
+    ///
+    /// Each hit asks for this box. Primitives of this crate override the method where `aabb` spends
+    /// time on a check of validity.
     #[doc(hidden)]
     fn aabb_of_valid(&self) -> Aabb<Self::Scalar> {
         self.aabb()
@@ -87,29 +91,37 @@ pub trait Primitive: Sync {
 /// # Ok::<(), bvhkit::BuildError>(())
 /// ```
 pub trait Intersect: Primitive {
-    /// What a hit tells beside t: barycentrics, a normal, `()`.
+    /// The data of a hit besides t: barycentrics, a normal, `()`.
     type Payload: Copy;
 
-    /// How primitives of this type lie in the leaves of the wide layouts, and how they are tested there:
-    /// [`OneByOne`](crate::OneByOne), or [`Sieved`](crate::Sieved) by a test in lanes. The leaves of triangles and spheres are for
-    /// types that forward to those: [`intersect`](Self::intersect) is not called there, operands say all.
+    /// The kind of leaf that stores and tests these primitives in the wide layouts.
+    ///
+    /// Use [`OneByOne`](crate::OneByOne), or [`Sieved`](crate::Sieved) to exclude primitives by a
+    /// test in lanes. The leaves of triangles and spheres are for types that forward to a triangle
+    /// or a sphere. Their operands hold the whole primitive, so [`intersect`](Self::intersect) is
+    /// not called there.
     type Leaf: Leaf<Self::Scalar, Self::Payload>;
 
-    /// Returns the ray's first hit with this primitive at a t in [`ray.t_min`, `ray.t_max`], and its payload.
+    /// Returns t and the payload of the ray's first hit with this primitive.
     ///
-    /// [`Bvh::closest_hit`](crate::Bvh::closest_hit) narrows the ray: its `t_max` is that of the closest hit found so far,
-    /// so that a primitive which is a hierarchy itself prunes by it.
+    /// A hit's t must be in [`ray.t_min`, `ray.t_max`].
+    /// [`Bvh::closest_hit`](crate::Bvh::closest_hit) narrows the ray: its `t_max` is that of the
+    /// closest hit found so far, so that a primitive which is a hierarchy itself prunes by it.
     ///
-    /// Expected to be a pure function: equal primitives and rays give equal answers. A t outside
-    /// the interval, NaN or infinite is no hit. Where rounding puts t before the ray's entry into the
-    /// primitive's own box, queries report the entry instead, a difference of the rounding error:
-    /// by this rule the tree's answer is the naive loop's, bit for bit. For the same reason a hit within
-    /// a few roundings of the interval's end may be on either side of it: to find a hit again, leave
-    /// `t_min` a little below its t.
+    /// This must be a pure function: equal primitives and rays give equal answers. A t outside the
+    /// interval, NaN or infinite is no hit.
+    ///
+    /// Rounding may put t before the ray's entry into the primitive's own box. Then queries report
+    /// the entry instead, which differs from t by the rounding error. By this rule the tree's
+    /// answer is the naive loop's, bit for bit. For the same reason a hit within a few roundings of
+    /// the interval's end may be on either side of that end: to find a hit again, leave `t_min` a
+    /// little below its t.
     fn intersect(&self, ray: &Ray<Self::Scalar>) -> Option<(Self::Scalar, Self::Payload)>;
 
-    /// Writes the scalars that lie in the leaf, [`Sieve::OPERANDS`](crate::Sieve::OPERANDS) for a [`Sieved`](crate::Sieved) one;
-    /// none for [`OneByOne`](crate::OneByOne).
+    /// Writes the scalars that the leaf stores for this primitive.
+    ///
+    /// A [`Sieved`](crate::Sieved) leaf stores [`Sieve::OPERANDS`](crate::Sieve::OPERANDS) scalars,
+    /// a [`OneByOne`](crate::OneByOne) leaf none.
     fn put_operands(&self, _operands: &mut [Self::Scalar]) {}
 }
 
@@ -144,5 +156,5 @@ macro_rules! forward {
 
 forward!(&P);
 forward!(Box<P>);
-// A list of them is read on several threads.
+// Lists are read on several threads, and `Arc<P>` is `Sync` only if `P` is `Send`.
 forward!(Arc<P> where P: Send);

@@ -1,10 +1,10 @@
-//! The sphere.
+//! The sphere primitive.
 
 use super::{Intersect, Primitive, SurfacePoint};
 use crate::geometry::{Aabb, Ray, Scalar, dot};
 use crate::leaf::SphereLeaf;
 
-/// A sphere's surface: a ray from inside hits it on the way out.
+/// The surface of a sphere. A ray that starts inside hits it on the way out.
 ///
 /// ```
 /// use bvhkit::{Bvh, Ray, Sphere};
@@ -17,18 +17,20 @@ use crate::leaf::SphereLeaf;
 pub struct Sphere<S = f32> {
     /// The center.
     pub center: [S; 3],
-    /// The radius, in units of length; one below zero makes the sphere invalid.
+    /// The radius, in units of length. A negative radius makes the sphere invalid.
     pub radius: S,
 }
 
 impl<S: Scalar> Sphere<S> {
-    /// The sphere around `center`.
+    /// Creates the sphere of `radius` around `center`.
     #[inline(always)]
     pub fn new(center: impl Into<[S; 3]>, radius: S) -> Self {
         Self { center: center.into(), radius }
     }
 
-    /// The point of the sphere nearest to `position`, which is `ray.at(hit.t)`, to start rays from.
+    /// Returns the point of the sphere nearest to `position`, to start rays from.
+    ///
+    /// For a hit, `position` is `ray.at(hit.t)`.
     pub fn surface_point(&self, position: impl Into<[S; 3]>) -> SurfacePoint<S> {
         SurfacePoint::of_sphere(self.center, self.radius, position.into())
     }
@@ -37,7 +39,7 @@ impl<S: Scalar> Sphere<S> {
 impl<S: Scalar> Primitive for Sphere<S> {
     type Scalar = S;
 
-    /// Rounded outward, so that it contains the exact sphere.
+    /// Returns a box rounded outward, so that it contains the exact sphere.
     #[inline(always)]
     fn aabb(&self) -> Aabb<S> {
         if self.radius < S::ZERO {
@@ -55,11 +57,15 @@ impl<S: Scalar> Intersect for Sphere<S> {
     type Payload = ();
     type Leaf = SphereLeaf;
 
-    /// The quadratic in the form of Haines, Gunther and Akenine-Moller (Precision Improvements for
-    /// Ray/Sphere Intersection, Ray Tracing Gems 2019): the discriminant from the distance between
-    /// the ray and the center (no cancellation for small, far spheres), the smaller root from the
-    /// larger (none for origins near the surface). Squares of lengths are computed: a direction or a
-    /// distance whose square leaves the scalar's range (1e19 or 1e-19 for f32) misses.
+    /// Solves the quadratic equation in a form that avoids cancellation.
+    ///
+    /// The form is that of Haines, Gunther and Akenine-Moller (Precision Improvements for
+    /// Ray/Sphere Intersection, Ray Tracing Gems 2019). The discriminant comes from the distance
+    /// between the ray and the center: no cancellation for small, far spheres. The smaller root
+    /// comes from the larger one: no cancellation for origins near the surface.
+    ///
+    /// The test squares lengths. If the square of the direction or of a distance leaves the
+    /// scalar's range (1e19 or 1e-19 for `f32`), the ray misses.
     #[inline(always)]
     fn intersect(&self, ray: &Ray<S>) -> Option<(S, ())> {
         let ([dx, dy, dz], [ox, oy, oz], [cx, cy, cz]) = (ray.direction, ray.origin, self.center);
@@ -70,12 +76,12 @@ impl<S: Scalar> Intersect for Sphere<S> {
         let to_line = [x + dx * step, y + dy * step, z + dz * step];
         let r2 = self.radius * self.radius;
         let discriminant = r2 - dot(to_line, to_line);
-        // Squares that left the range, either way, would give a t that means nothing.
+        // Squares that left the range, at either end, would give a meaningless t.
         let is_hit = discriminant >= S::ZERO && a.is_normal_number();
         if !is_hit {
             return None;
         }
-        // Two roots: the product may leave the range where neither factor does.
+        // Two square roots: the product may leave the range where neither factor does.
         let root = a.sqrt() * discriminant.sqrt();
         let c = dot([x, y, z], [x, y, z]) - r2;
         let q = if b < S::ZERO { b - root } else { b + root };

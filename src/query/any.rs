@@ -1,11 +1,11 @@
-//! Whether anything is hit at all.
+//! Any hit: whether a ray hits anything at all.
 
 use super::each::each;
 use crate::primitive::{Intersect, accept};
 use crate::traverse::{LeafTest, LeafView, RayState};
 use core::ops::ControlFlow;
 
-/// Stops at the first hit.
+/// The leaf test of any hit, which stops at the first one.
 pub(super) struct AnyTest<'a, P> {
     pub primitives: &'a [P],
     pub is_hit: bool,

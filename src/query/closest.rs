@@ -1,4 +1,4 @@
-//! The first hit along a ray.
+//! The closest hit along a ray.
 
 use super::each::each;
 use super::{Hit, HitOf};
@@ -8,7 +8,9 @@ use crate::primitive::{Intersect, accept};
 use crate::traverse::{Found, LeafTest, LeafView, RayState};
 use core::ops::ControlFlow;
 
-/// Keeps the payload of the closest hit so far, and narrows the ray to it.
+/// The leaf test of the closest hit.
+///
+/// It keeps the payload of the closest hit so far, and narrows the ray to that hit.
 pub(super) struct ClosestTest<'a, P: Intersect> {
     pub primitives: &'a [P],
     pub payload: Option<P::Payload>,
@@ -29,14 +31,14 @@ impl<P: Intersect> LeafTest<P::Scalar> for ClosestTest<'_, P> {
 }
 
 impl<P: Intersect> ClosestTest<'_, P> {
-    /// What was found, once the ray is at its end.
+    /// Returns the hit that was found, once the ray is at its end.
     #[inline(always)]
     pub fn hit(self, ray: &RayState<P::Scalar>) -> Option<HitOf<P>> {
         self.payload.map(|payload| Hit { t: ray.ray.t_max, index: ray.index as usize, payload })
     }
 }
 
-/// The hit that was found in lanes, if there is one.
+/// Returns the hit that a kernel found in lanes, if there is one.
 #[inline(always)]
 pub(super) fn hit_of<P: Intersect>(found: &Found<P::Scalar>) -> Option<HitOf<P>> {
     let &Found { t, index, details } = found;

@@ -1,4 +1,4 @@
-//! The primitives of a leaf that are asked.
+//! The loop over primitives of a leaf that are tested one by one.
 
 use crate::geometry::Scalar;
 use crate::leaf::sealed::LeafKind;
@@ -7,7 +7,9 @@ use crate::primitive::Intersect;
 use crate::traverse::{LeafView, RayState};
 use core::ops::ControlFlow;
 
-/// Shows the primitives of a leaf with their indices: all, or those that the type's sieve lets through, until `ask` breaks.
+/// Calls `test` with primitives of a leaf and their indices, until it breaks.
+///
+/// These are all primitives of the leaf, or those that the sieve of their type lets through.
 #[inline(always)]
 pub(super) fn each<P: Intersect>(
     primitives: &[P],

@@ -1,4 +1,4 @@
-//! All hits along a ray, in order, found as they are asked for.
+//! All hits along a ray, in order, found on demand.
 
 use super::each::each;
 use super::{Hit, HitOf, Traverse};
@@ -12,21 +12,24 @@ use core::ops::ControlFlow;
 
 /// An iterator over the hits of a ray by increasing (t, index).
 ///
-/// Two queues hold what is known of the ray: boxes by where the ray enters them, hits by their t. The nearest box is opened
-/// until none lies before the first hit, which is the next one then: no hit lies before its box (the own-box rule). So the
-/// first hit opens no more than the closest one does, and each that follows only what it takes to be sure of it. Nodes
-/// and leaves are tested as by the other queries, all children or primitives at once.
+/// The search is best-first. It has two queues: boxes by the t at which the ray enters them, and
+/// hits by their t. It opens the nearest box until the first hit is before all boxes. That hit is
+/// the next one, since no hit is before its box (the own-box rule). So the first hit opens no more
+/// boxes than the closest hit does, and each further hit opens only the boxes that it takes to be
+/// sure. Nodes and leaves are tested as in the other queries: all children or primitives at once.
 ///
-/// It allocates, where the closest hit does not: no number of boxes is too many to lie ahead.
+/// The iterator allocates, unlike the closest hit: there may be any number of boxes ahead.
 ///
-/// From [`Bvh::hits`](crate::Bvh::hits).
+/// Made by [`Bvh::hits`](crate::Bvh::hits).
 pub struct Hits<'a, P: Intersect, L: Traverse<P>, R = ()> {
     layout: &'a L,
     backend: Backend,
     ray: Ray<P::Scalar>,
     ahead: BestFirst<P::Scalar, L::Place>,
     leaf_test: AllTest<'a, P>,
-    /// The last answer: a primitive that is in several leaves is met again, but is an answer once.
+    /// The last answer.
+    ///
+    /// A primitive in several leaves is met again, but is an answer once.
     last: Option<(P::Scalar, u32)>,
     recorder: R,
 }
@@ -80,7 +83,7 @@ impl<P: Intersect, L: Traverse<P>, R: Recorder> Iterator for Hits<'_, P, L, R> {
 
 impl<P: Intersect, L: Traverse<P>, R: Recorder> core::iter::FusedIterator for Hits<'_, P, L, R> {}
 
-/// Keeps the payloads of all hits that were found.
+/// The leaf test of all hits, which keeps their payloads.
 #[doc(hidden)]
 pub struct AllTest<'a, P: Intersect> {
     pub(super) primitives: &'a [P],

@@ -1,4 +1,4 @@
-//! What is asked of a hierarchy, in the user's types: thin, above the kernels in `traverse`.
+//! Queries in the user's types: a thin layer above the kernels in `traverse`.
 
 mod any;
 mod closest;
@@ -11,16 +11,16 @@ pub use traverse::Traverse;
 
 use crate::primitive::Intersect;
 
-/// A ray's hit with a primitive.
+/// A hit of a ray with a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit<S, T> {
-    /// Where on the ray: the point is `origin + t * direction`.
+    /// The position on the ray: the point is `origin + t * direction`.
     pub t: S,
     /// The primitive's index in the input.
     pub index: usize,
-    /// What the primitive tells of the hit: barycentrics, `()`, whatever its type says.
+    /// The primitive's own data about the hit, such as barycentrics, or `()`.
     pub payload: T,
 }
 
-/// The hit that a primitive of type `P` gives.
+/// The hit of a ray with a primitive of type `P`.
 pub(crate) type HitOf<P> = Hit<<P as crate::Primitive>::Scalar, <P as Intersect>::Payload>;

@@ -1,4 +1,4 @@
-//! Queries of each layout: which kernel is asked, and what its answer is made into.
+//! The queries of each layout: they choose a kernel, and convert its answer.
 
 use super::HitOf;
 use super::any::AnyTest;
@@ -13,7 +13,9 @@ use crate::simd::Backend;
 use crate::traverse::{BestFirst, Counters, EncodingKernels, Found, RayState, ScalarKernels};
 use crate::tree::Tree;
 
-/// A layout that rays can be traced through: all of them. Sealed.
+/// A layout that rays can be traced through.
+///
+/// Every layout is one. This trait is sealed.
 pub trait Traverse<P: Intersect>: Layout<P> {
     #[doc(hidden)]
     fn closest_hit(&self, backend: Backend, primitives: &[P], ray: &Ray<P::Scalar>) -> Option<HitOf<P>>;
@@ -32,7 +34,7 @@ pub trait Traverse<P: Intersect>: Layout<P> {
     #[doc(hidden)]
     fn counted_any_hit(&self, backend: Backend, primitives: &[P], ray: &Ray<P::Scalar>) -> (bool, Counters);
 
-    /// Of as many rays as there are places.
+    /// Writes the closest hit of each ray; the longer list's rest is left alone.
     #[doc(hidden)]
     fn closest_hits(
         &self,
@@ -46,7 +48,7 @@ pub trait Traverse<P: Intersect>: Layout<P> {
         }
     }
 
-    /// Of as many rays as there are places.
+    /// Writes whether each ray hits anything; the longer list's rest is left alone.
     #[doc(hidden)]
     fn any_hits(&self, backend: Backend, primitives: &[P], rays: &[Ray<P::Scalar>], hits: &mut [bool]) {
         for (ray, hit) in rays.iter().zip(hits) {
@@ -54,7 +56,7 @@ pub trait Traverse<P: Intersect>: Layout<P> {
         }
     }
 
-    /// Opens boxes until the next hit of a valid ray is known.
+    /// Opens boxes until the next hit of a valid ray is known; returns the steps.
     #[doc(hidden)]
     fn open_ahead(
         &self,
@@ -65,7 +67,7 @@ pub trait Traverse<P: Intersect>: Layout<P> {
     ) -> Counters;
 }
 
-/// The kernels of a type's leaves, if operands say all of its primitives.
+/// A kernel of the leaves of a type whose operands tell all about its primitives.
 macro_rules! in_lanes {
     ($primitive:ty, $form:ty, $kernel:ident) => {
         const {
@@ -206,7 +208,9 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
-    /// A scalar of a coarse lattice, so that rays meet corners and edges, or of none.
+    /// Returns a scalar, on a coarse lattice or not.
+    ///
+    /// On the lattice, rays meet corners and edges.
     fn scalar<S: Scalar>(rng: &mut Pcg64Mcg) -> S {
         let x: f64 = rng.random_range(-4.0..4.0);
         S::from_f64(if rng.random() { x } else { x.round() })
@@ -216,7 +220,9 @@ mod tests {
         [scalar(rng), scalar(rng), scalar(rng)]
     }
 
-    /// Rays that begin at lattice points or beside them, along the axes or not, of which some look behind their origin.
+    /// Returns rays from points on a lattice or not, along the axes or not.
+    ///
+    /// Some of them look behind their origin.
     fn rays<S: Scalar>(rng: &mut Pcg64Mcg) -> Vec<Ray<S>> {
         let mut ray = || {
             let ray = Ray::new(point(rng), point(rng));
@@ -230,7 +236,9 @@ mod tests {
         (0..2000).map(|_| ray()).collect()
     }
 
-    /// By every variant of every instruction set: some have two, of which users get the quicker one.
+    /// Checks the answers of every variant of every instruction set.
+    ///
+    /// Some instruction sets have two variants, of which users get the quicker one.
     fn answers_are_those_of_the_loop<P: Intersect<Payload: PartialEq + core::fmt::Debug> + Clone>(
         primitive: impl Fn(&mut Pcg64Mcg) -> P,
     ) {

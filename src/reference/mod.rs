@@ -1,14 +1,16 @@
-//! The naive answers: every primitive is asked, none is passed over.
+//! Naive queries, which test every primitive in a loop.
 //!
-//! What a tree answers is tested against these, this crate's and, if you like, your own: the
-//! functions take any slice of primitives. They use the same acceptance of hits as the queries
-//! of [`Bvh`](crate::Bvh) (see [`Intersect::intersect`]), and answer by the smallest (t, index), so
-//! a tree of this crate gives the same t, bit for bit, and the same index.
+//! The answers of a tree are tested against these, be it a tree of this crate or, if you like, your
+//! own: the functions take any slice of primitives. They accept hits by the same rule as the
+//! queries of [`Bvh`](crate::Bvh) (see [`Intersect::intersect`]), and answer by the smallest (t,
+//! index). So a tree of this crate gives the same t, bit for bit, and the same index.
 //!
 //! With the feature `exact`, the module `exact` answers for triangles without any rounding.
 //!
-//! An invalid primitive (see [`InvalidBox`](crate::InvalidBox)) is not hit, as in a tree that was told to skip
-//! such.
+//! An invalid primitive (see [`InvalidBox`](crate::InvalidBox)) is not hit, as in a tree that is
+//! told to skip invalid primitives.
+//!
+//! # Examples
 //!
 //! ```
 //! use bvhkit::{Bvh, Ray, Sphere, reference};
@@ -30,12 +32,14 @@ use crate::query::{Hit, HitOf};
 use crate::traverse::Recorder;
 use alloc::vec::Vec;
 
-/// The hit with the smallest t in the ray's interval; of equal ones, that with the lowest index.
+/// Returns the hit with the smallest t in the ray's interval.
+///
+/// Of hits with equal t, it is the one with the lowest index.
 pub fn closest_hit<P: Intersect>(primitives: &[P], ray: &Ray<P::Scalar>) -> Option<HitOf<P>> {
     closest_hit_with(primitives, ray, &mut ())
 }
 
-/// As [`closest_hit`], telling `recorder` of each step.
+/// Returns the same as [`closest_hit`], and tells `recorder` of each step.
 pub fn closest_hit_with<P: Intersect>(
     primitives: &[P],
     ray: &Ray<P::Scalar>,
@@ -50,12 +54,12 @@ pub fn closest_hit_with<P: Intersect>(
     best
 }
 
-/// Whether anything is hit in the ray's interval; stops at the first that is.
+/// Whether anything is hit in the ray's interval; stops at the first hit.
 pub fn any_hit<P: Intersect>(primitives: &[P], ray: &Ray<P::Scalar>) -> bool {
     any_hit_with(primitives, ray, &mut ())
 }
 
-/// As [`any_hit`], telling `recorder` of each step.
+/// Returns the same as [`any_hit`], and tells `recorder` of each step.
 pub fn any_hit_with<P: Intersect>(
     primitives: &[P],
     ray: &Ray<P::Scalar>,
@@ -64,15 +68,15 @@ pub fn any_hit_with<P: Intersect>(
     all(primitives, ray, recorder).next().is_some()
 }
 
-/// All hits in the ray's interval, by increasing t, equal ones by index.
+/// Returns all hits in the ray's interval, by increasing t, equal ones by index.
 pub fn hits<P: Intersect>(primitives: &[P], ray: &Ray<P::Scalar>) -> Vec<HitOf<P>> {
     let mut hits: Vec<_> = all(primitives, ray, &mut ()).collect();
-    // By index already, and the sort is stable; no t is NaN.
+    // The hits are in the order of their indices, and the sort is stable. No t is NaN.
     hits.sort_by(|a, b| a.t.partial_cmp(&b.t).unwrap_or(core::cmp::Ordering::Equal));
     hits
 }
 
-/// The hits in the order of the input.
+/// Returns the hits in the order of the input.
 fn all<'a, P: Intersect>(
     primitives: &'a [P],
     ray: &Ray<P::Scalar>,

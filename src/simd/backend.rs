@@ -1,4 +1,4 @@
-//! Which instructions a query is compiled for, chosen at run time.
+//! The choice of the instruction set that a query runs with, at run time.
 
 use super::{Baseline, Doubled, Isa, LeafLanes, Single};
 use core::fmt;
@@ -7,35 +7,40 @@ use std::sync::OnceLock;
 
 /// An instruction set that queries are compiled for.
 ///
-/// [`best`](Self::best) is what is used unless
-/// [`Builder::instruction_set`](crate::Builder::instruction_set) says otherwise, to compare or to
-/// test: answers are the same bits on all.
+/// Queries use [`best`](Self::best) unless
+/// [`Builder::instruction_set`](crate::Builder::instruction_set) names another one, to compare or
+/// to test. Answers are the same bits on all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum InstructionSet {
-    /// No vector instructions asked for: four to sixteen scalars in plain code.
+    /// Plain code on four to sixteen scalars, without vector instructions.
     Portable,
-    /// The least that the target has: SSE2 on x86-64, NEON on aarch64, SIMD128 on wasm32 if it is
-    /// enabled.
+    /// The least that the target has.
+    ///
+    /// It is SSE2 on x86-64, NEON on aarch64, and SIMD128 on wasm32 if that is enabled.
     Baseline,
     /// AVX2: x86-64-v3.
     Avx2,
-    /// AVX-512, as since Ice Lake and Zen 4.
+    /// AVX-512, as processors have it since Ice Lake and Zen 4.
     Avx512,
 }
 
 impl InstructionSet {
-    /// All, from the least to the best.
+    /// All instruction sets, from the least to the best.
     pub const ALL: &[Self] = &[Self::Portable, Self::Baseline, Self::Avx2, Self::Avx512];
 
-    /// The best that this processor has. Without the feature `std` it cannot be asked, and this is
-    /// what the build's target has.
+    /// Returns the best instruction set that this processor has.
+    ///
+    /// Without the feature `std` the processor cannot be asked, and this is the best one of
+    /// the build's target.
     pub fn best() -> Self {
         Backend::best().instruction_set()
     }
 
-    /// Those that this processor has and this build contains, from the least to the best.
-    /// `Portable` is in builds for targets without vectors, and in this crate's tests.
+    /// Returns those that this processor has and this build contains, the least first.
+    ///
+    /// `Portable` is in builds for targets without vectors, and in builds with the feature
+    /// `portable`, which is for tests.
     pub fn available() -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(|&set| Backend::of(set).is_some())
     }
@@ -52,29 +57,37 @@ impl fmt::Display for InstructionSet {
     }
 }
 
-/// What is compiled for each instruction set.
+/// Code that is compiled once for each instruction set.
 pub trait Kernel {
-    /// Compiled for the target's own instruction set alone if not.
+    /// Whether it is compiled for all instruction sets, or for the baseline alone.
     const IS_WIDE: bool;
-    /// Compiled for AVX-512 too if it is wide; else AVX2 is the widest.
+    /// Whether a wide kernel is compiled for AVX-512 too, or for AVX2 at most.
     const USES_AVX512: bool = true;
     type Output;
-    /// `#[inline(always)]`, and so is everything that it calls and that is to use the instructions.
+    /// Runs the kernel.
+    ///
+    /// It is `#[inline(always)]`, and so is each function that it calls and that has to
+    /// use the instructions.
     fn run<I: Isa>(self, isa: I) -> Self::Output;
 }
 
-/// A kernel whose arguments stay in registers: as fields of a [`Kernel`] they would be written to memory and read again, and what
-/// chooses its copy would call it where now it jumps.
+/// A kernel whose arguments stay in registers.
+///
+/// As fields of a [`Kernel`] the arguments would be written to memory and read again, and the
+/// dispatch would call the chosen copy instead of jumping to it.
 pub trait Routine {
     type A;
     type B;
     type C;
     type D;
     type Output;
-    /// Whether there is a copy with [`Doubled`] vectors, where those are quicker.
+    /// Whether there is a copy with [`Doubled`] vectors, for where those are faster.
     const HAS_DOUBLED: bool;
 
-    /// `#[inline(always)]`, and so is everything that it calls and that is to use the instructions.
+    /// Runs the routine.
+    ///
+    /// It is `#[inline(always)]`, and so is each function that it calls and that has to
+    /// use the instructions.
     fn run<I: Isa, W: LeafLanes>(
         isa: I,
         backend: Backend,
@@ -84,14 +97,18 @@ pub trait Routine {
         d: Self::D,
     ) -> Self::Output;
 
-    /// In place of copies for the baseline of x86, which processors of the last ten years go beyond, and for the portable path.
+    /// Runs in place of [`run`](Self::run) where that is not compiled.
+    ///
+    /// This is so for the baseline of x86, since processors of the last ten years have more, and
+    /// for the portable path.
     fn run_otherwise(backend: Backend, a: Self::A, b: Self::B, c: Self::C, d: Self::D) -> Self::Output;
 }
 
 macro_rules! backends {
     ($($(#[$where:meta])* $backend:ident($module:ident::$isa:ident) = $set:ident, $call:ident;)*) => {
-        /// An instruction set that the processor was found to have: the variant's value is the
-        /// proof.
+        /// An instruction set that the processor was found to have.
+        ///
+        /// The variant's value is the proof.
         #[derive(Clone, Copy, Debug)]
         pub enum Backend {
             $($(#[$where])* $backend(super::$module::$isa),)*
@@ -102,7 +119,7 @@ macro_rules! backends {
                 Self::all().find(|backend| backend.instruction_set() == set && backend.is_quicker())
             }
 
-            /// Those that the processor has.
+            /// Returns all variants that the processor has.
             pub fn all() -> impl Iterator<Item = Self> {
                 let all = [$($(#[$where])* super::$module::$isa::detect().map(Self::$backend),)*];
                 all.into_iter().flatten()
@@ -158,20 +175,22 @@ backends! {
 }
 
 impl Backend {
-    /// The best that the processor has. It is asked once: builders want to know often.
+    /// Returns the best that the processor has.
+    ///
+    /// The processor is asked once, since builders need the answer often.
     #[cfg(feature = "std")]
     pub fn best() -> Self {
         static BEST: OnceLock<Backend> = OnceLock::new();
         *BEST.get_or_init(Self::detect)
     }
 
-    /// The best that the build's target has.
+    /// Returns the best that the build's target has.
     #[cfg(not(feature = "std"))]
     pub fn best() -> Self {
         Self::detect()
     }
 
-    /// Whether it is the quicker on this processor, of two with the same instruction set.
+    /// Whether this is the faster variant of its instruction set on this processor.
     fn is_quicker(self) -> bool {
         match self {
             #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
@@ -218,7 +237,7 @@ fn call_doubled<I: Isa, R: Routine>(
     }
 }
 
-/// Below one function that has the instructions switched on.
+/// Runs the kernel inside one function that has the instructions enabled.
 #[inline(always)]
 fn vectorized<I: Isa, K: Kernel>(isa: I, kernel: K) -> K::Output {
     isa.vectorize(

@@ -1,16 +1,16 @@
-//! Vectors, behind one trait for all and one more for kernels.
+//! Vectors: one trait for all code, and a second one for kernels alone.
 
 use super::Isa;
 use crate::geometry::Scalar;
 use core::mem::MaybeUninit;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
-/// Room for what a node puts on the stack.
+/// Space on the traversal stack for all children of one node.
 pub(crate) type Window<T> = [MaybeUninit<T>; 16];
 
-/// Several scalars side by side, to write tests of packed primitives with. Sealed.
+/// A vector of scalars, to write tests of packed primitives with. Sealed.
 ///
-/// Each operation is done in every lane, by plain IEEE 754 arithmetic: a lane's bits are those of
+/// Each operation works on every lane by plain IEEE 754 arithmetic: the bits of a lane are those of
 /// the same operations on one scalar.
 pub trait Lanes<S>:
     KernelLanes<S, Flags = <Self as Lanes<S>>::Mask>
@@ -20,84 +20,90 @@ pub trait Lanes<S>:
     + Mul<Output = Self>
     + Div<Output = Self>
 {
-    /// How many scalars.
+    /// The number of lanes.
     const COUNT: usize;
     /// A truth value for each lane.
     type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
 
-    /// The smaller in each lane, `other`'s where either is NaN.
+    /// Returns the smaller in each lane, and `other`'s where either is NaN.
     #[must_use]
     fn min(self, other: Self) -> Self;
-    /// The larger in each lane, `other`'s where either is NaN.
+    /// Returns the larger in each lane, and `other`'s where either is NaN.
     #[must_use]
     fn max(self, other: Self) -> Self;
-    /// The absolute values.
+    /// Returns the absolute values.
     #[must_use]
     fn abs(self) -> Self;
-    /// The square roots, rounded correctly; NaN below zero.
+    /// Returns the square roots, rounded correctly, and NaN below zero.
     #[must_use]
     fn sqrt(self) -> Self;
-    /// This lane where the mask is true, else `other`'s.
+    /// Returns the lanes of `self` where the mask is true, else those of `other`.
     #[must_use]
     fn select(self, mask: Self::Mask, other: Self) -> Self;
-    /// `self < other`; false for NaN.
+    /// Returns `self < other` for each lane, false where either is NaN.
     fn lt(self, other: Self) -> Self::Mask;
-    /// `self <= other`; false for NaN.
+    /// Returns `self <= other` for each lane, false where either is NaN.
     fn le(self, other: Self) -> Self::Mask;
-    /// Bit k is lane k's.
+    /// Returns the mask as bits: bit k is that of lane k.
     fn bits(mask: Self::Mask) -> u32;
 }
 
-/// What kernels do with lanes, and users do not.
+/// The operations on lanes that kernels use and users do not.
 pub trait KernelLanes<S>: Sized {
-    /// Proof that the processor has the instructions.
+    /// The proof that the processor has the instructions.
     type Isa: Isa;
-    /// `Lanes::Mask`.
+    /// The same type as `Lanes::Mask`.
     type Flags;
 
-    /// The same value in all lanes.
+    /// Returns a vector with the same value in all lanes.
     fn splat(isa: Self::Isa, value: S) -> Self;
     /// Reads `COUNT` scalars.
     ///
     /// # Safety
-    /// They are there, and initialised.
+    ///
+    /// `from` points to `COUNT` initialised scalars.
     unsafe fn load(isa: Self::Isa, from: *const S) -> Self;
-    /// Reads `COUNT` bytes, as scalars.
+    /// Reads `COUNT` bytes, each as one scalar.
     ///
     /// # Safety
-    /// They are there, and initialised.
+    ///
+    /// `from` points to `COUNT` initialised bytes.
     unsafe fn load_bytes(isa: Self::Isa, from: *const u8) -> Self;
-    /// Reads the first `COUNT` scalars.
+    /// Reads the first `COUNT` scalars of a slice.
     ///
     /// # Panics
-    /// If there are fewer.
+    ///
+    /// Panics if the slice has fewer.
     #[inline(always)]
     fn from_slice(isa: Self::Isa, from: &[S]) -> Self
     where
         Self: Lanes<S>,
     {
         assert!(from.len() >= Self::COUNT);
-        // SAFETY: so many are there.
+        // SAFETY: the slice has at least `COUNT` scalars, as asserted above.
         unsafe { Self::load(isa, from.as_ptr()) }
     }
-    /// Reads the first `COUNT` bytes, as scalars.
+    /// Reads the first `COUNT` bytes of a slice, each as one scalar.
     ///
     /// # Panics
-    /// If there are fewer.
+    ///
+    /// Panics if the slice has fewer.
     #[inline(always)]
     fn from_bytes(isa: Self::Isa, from: &[u8]) -> Self
     where
         Self: Lanes<S>,
     {
         assert!(from.len() >= Self::COUNT);
-        // SAFETY: so many are there.
+        // SAFETY: the slice has at least `COUNT` bytes, as asserted above.
         unsafe { Self::load_bytes(isa, from.as_ptr()) }
     }
     /// Writes `COUNT` scalars.
     fn store(self, to: &mut [S]);
-    /// One of the scalars.
+    /// Returns the scalar of one lane.
     fn lane(self, lane: usize) -> S;
-    /// The first three rounded toward zero, where they are from 0 to 2^31 - 1.
+    /// Returns the first three lanes as integers, rounded toward zero.
+    ///
+    /// The lanes have to be in the range from 0 to 2^31 - 1.
     #[inline(always)]
     fn to_integers(self) -> [i32; 3]
     where
@@ -106,49 +112,63 @@ pub trait KernelLanes<S>: Sized {
     {
         [self.lane(0).to_f64() as i32, self.lane(1).to_f64() as i32, self.lane(2).to_f64() as i32]
     }
-    /// Of two children or more, at distances not below +0, the lane of the nearest; all are written
-    /// to the windows, farthest first, with entries that are never larger. None where there is no
-    /// quick way.
+    /// Sorts two or more children by distance and returns the lane of the nearest.
+    ///
+    /// Takes the mask of the children, all children, and two windows of the traversal stack. No
+    /// distance is below +0. Writes all children of the mask to the windows, the farthest
+    /// first, and with each an entry that is never larger than its distance. Returns `None`
+    /// where there is no fast way.
     #[inline(always)]
     fn sort(self, _: u32, _: &[u32], _: &mut Window<u32>, _: &mut Window<S>) -> Option<u32> {
         None
     }
-    /// Writes the children whose bits are set to the window, in order. False where there is no
-    /// quick way.
+    /// Writes the children of a mask to the window, in the order of their lanes.
+    ///
+    /// Returns false where there is no fast way.
     #[inline(always)]
     fn compress(_: Self::Isa, _: u32, _: &[u32], _: &mut Window<u32>) -> bool {
         false
     }
-    /// `self * factor + more`, rounded once where the processor can, else twice: not for answers.
+    /// Returns `self * factor + more`, rounded once if the processor can, else twice.
+    ///
+    /// No answer may be computed with it.
     fn mul_add(self, factor: Self, more: Self) -> Self;
-    /// Whether [`later`](Self::later), [`earlier`](Self::earlier) and
-    /// [`not_after`](Self::not_after) compare integers: the order of numbers above -0 is that of
-    /// their bits, which some processors find in a quarter of the time.
+    /// Whether the three order operations compare bits, as integers.
+    ///
+    /// These are [`later`](Self::later), [`earlier`](Self::earlier) and
+    /// [`not_after`](Self::not_after). Numbers above -0 have the order of their bits, and some
+    /// processors compare integers in a quarter of the time.
     fn orders_by_bits(isa: Self::Isa) -> bool;
-    /// The larger in each lane, where none is NaN. Which of two with a minus sign is open.
+    /// Returns the larger in each lane, where neither is NaN.
+    ///
+    /// Of two with a minus sign it returns either.
     fn later(self, other: Self) -> Self;
-    /// The smaller in each lane, where none is NaN. Which of two with a minus sign is open.
+    /// Returns the smaller in each lane, where neither is NaN.
+    ///
+    /// Of two with a minus sign it returns either.
     fn earlier(self, other: Self) -> Self;
-    /// `self <= other`, where none is NaN, `self` has a plus sign, and `other` is not -0.
+    /// Returns `self <= other` for each lane.
+    ///
+    /// Neither is NaN, `self` has a plus sign, and `other` is not -0.
     fn not_after(self, other: Self) -> Self::Flags;
-    /// The instruction set.
+    /// Returns the token of the instruction set.
     fn isa(self) -> Self::Isa;
 }
 
-/// Lanes that are two times as many.
+/// A vector that splits into two vectors of half as many lanes.
 pub trait Halves<H>: Sized {
-    /// The one's lanes, then the other's.
+    /// Joins the lanes of the first half and those of the second.
     fn of_halves(halves: [H; 2]) -> Self;
     fn to_halves(self) -> [H; 2];
 }
 
-/// The lanes of a tree whose nodes have so many children: 4, 8 or 16.
+/// The lanes for nodes of 4, 8 or 16 children.
 pub trait Width: 'static {
-    /// A scalar for each child of a node.
+    /// A vector with one scalar for each child of a node.
     type Lanes<S: Scalar, I: Isa>: Lanes<S, Isa = I>;
 }
 
-/// A number of children.
+/// A number of children of a node, as a type.
 pub struct Count<const N: usize>;
 
 impl Width for Count<4> {
@@ -161,16 +181,18 @@ impl Width for Count<16> {
     type Lanes<S: Scalar, I: Isa> = S::Times16<I>;
 }
 
-/// The vectors that a leaf's primitives are tested in.
+/// The vectors in which the primitives of a leaf are tested.
 pub trait LeafLanes: 'static {
-    /// A scalar for each primitive.
+    /// A vector with one scalar for each primitive.
     type Lanes<S: Scalar, I: Isa>: Lanes<S, Isa = I>;
 }
 
 /// Vectors of as many lanes as a leaf has primitives.
 pub struct Single;
 
-/// Vectors as wide as those of a node's children, which hold everything twice: see `x86::doubled`.
+/// Vectors as wide as those of a node's children, which hold each lane twice.
+///
+/// See `x86::doubled`.
 pub struct Doubled;
 
 impl LeafLanes for Single {

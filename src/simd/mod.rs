@@ -1,11 +1,12 @@
-//! Several scalars side by side, and the instruction sets that compute with them.
+//! Vectors of scalars, and the instruction sets that compute with them.
 //!
-//! Kernels are generic inline functions over [`Lanes`], compiled once for each instruction set
-//! below one `#[target_feature]` function (see [`InstructionSet`]). Arithmetic is the plain IEEE
-//! 754 one on all of them, nothing fused but in `mul_add`, which no answer is made of: equal
-//! operands give equal bits whatever the machine.
+//! Kernels are generic inline functions over [`Lanes`]. Each is compiled once for each instruction
+//! set, inside one `#[target_feature]` function (see [`InstructionSet`]). Arithmetic is plain IEEE
+//! 754 on all of them. Only `mul_add` may be fused, and no answer is computed with it: equal
+//! operands give equal bits on every machine.
 //!
-//! An instruction set is a token and its vectors ([`Isa`]), each of which is a list of operations.
+//! An instruction set is a token type and its vector types ([`Isa`]). Each vector type is
+//! a list of operations.
 
 mod backend;
 mod isa;
@@ -33,7 +34,7 @@ mod simd128;
 #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
 mod x86;
 
-/// What every processor of the target has.
+/// The instruction set that every processor of the target has.
 #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
 use neon::Neon as Baseline;
 #[cfg(not(any(

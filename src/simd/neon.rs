@@ -1,11 +1,11 @@
-//! NEON, which every aarch64 has but those for programs without numbers.
+//! NEON, which every aarch64 target has except those without floating point.
 
 use crate::simd::Pair;
 use crate::simd::isa::plain_isa;
 use crate::simd::vector::vector;
 use core::arch::aarch64::*;
 
-/// Proof of NEON.
+/// The token that proves NEON.
 #[derive(Clone, Copy, Debug)]
 pub struct Neon(());
 
@@ -25,11 +25,11 @@ vector! {
     sub(a, b) = vsubq_f32(a, b);
     mul(a, b) = vmulq_f32(a, b);
     div(a, b) = vdivq_f32(a, b);
-    // The sum comes first.
+    // The addend is the first argument.
     mul_add(a, b, c) = vfmaq_f32(c, a, b);
     abs(a) = vabsq_f32(a);
     sqrt(a) = vsqrtq_f32(a);
-    // The instructions for minimum and maximum give NaN for NaN.
+    // The instructions for minimum and maximum return NaN if either operand is NaN.
     min(a, b) = vbslq_f32(vcltq_f32(a, b), a, b);
     max(a, b) = vbslq_f32(vcgtq_f32(a, b), a, b);
     lt(a, b) = vcltq_f32(a, b);

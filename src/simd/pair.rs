@@ -1,9 +1,9 @@
-//! Twice as many lanes as a vector has.
+//! A vector of two vectors: twice as many lanes as the processor's own.
 
 use super::{Halves, KernelLanes, Lanes};
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
-/// The lanes of one, then those of the other.
+/// The lanes of the first vector, then those of the second.
 #[derive(Clone, Copy)]
 pub struct Pair<L>(L, L);
 
@@ -29,7 +29,7 @@ impl<M: Not<Output = M>> Not for Pair<M> {
     }
 }
 
-/// Methods that do the same to both.
+/// Methods that do the same on both vectors.
 macro_rules! in_both {
     ($($method:ident($($other:ident),*) -> $result:ty,)*) => {
         $(#[inline(always)]
@@ -72,12 +72,12 @@ impl<S, L: Lanes<S>> KernelLanes<S> for Pair<L> {
     }
     #[inline(always)]
     unsafe fn load(isa: L::Isa, from: *const S) -> Self {
-        // SAFETY: the caller's: there are twice as many.
+        // SAFETY: the caller promises `COUNT` scalars, which are two times `L::COUNT`.
         unsafe { Self(L::load(isa, from), L::load(isa, from.add(L::COUNT))) }
     }
     #[inline(always)]
     unsafe fn load_bytes(isa: L::Isa, from: *const u8) -> Self {
-        // SAFETY: the caller's: there are twice as many.
+        // SAFETY: the caller promises `COUNT` bytes, which are two times `L::COUNT`.
         unsafe { Self(L::load_bytes(isa, from), L::load_bytes(isa, from.add(L::COUNT))) }
     }
     #[inline(always)]

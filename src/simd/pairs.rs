@@ -1,21 +1,21 @@
-//! Four scalars side by side, for the slab test of two boxes at once.
+//! Four lanes, for the slab test of two boxes at once.
 //!
-//! A vector for f32 where there is one, else an array. Both round alike and leave a NaN out of the maximum
-//! alike, so results are the same bits everywhere.
+//! They are a vector for `f32` where the target has one, else an array. Both round alike, and both
+//! leave a NaN out of the maximum alike, so results have the same bits everywhere.
 
 /// Four lanes of `S`.
 pub trait Lanes4<S>: Copy {
-    /// The two pairs one after the other.
+    /// Joins two pairs: lanes 0 and 1, then lanes 2 and 3.
     fn of_pairs(first: &[S; 2], second: &[S; 2]) -> Self;
-    /// One value in the first two lanes, another in the other two.
+    /// Puts one value in the first two lanes and another in the last two.
     fn of_halves(first: S, second: S) -> Self;
-    /// The same in all lanes.
+    /// Returns a vector with the same value in all lanes.
     fn splat(value: S) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
-    /// The larger in each lane, `other`'s where either is NaN.
+    /// Returns the larger in each lane, and `other`'s where either is NaN.
     fn max(self, other: Self) -> Self;
-    /// The first two lanes, and the other two with their signs turned.
+    /// Returns the first two lanes, and the last two with opposite signs.
     fn to_pairs_negating_second(self) -> [[S; 2]; 2];
 }
 
@@ -59,7 +59,7 @@ portable!(f64);
 #[cfg(any(test, not(target_arch = "x86_64")))]
 portable!(f32);
 
-/// The lanes of `f32`: a vector where every processor of the target has one.
+/// Four lanes of `f32`: a vector if every processor of the target has one.
 #[cfg(target_arch = "x86_64")]
 pub type F32Lanes4 = sse2::Lanes;
 #[cfg(not(target_arch = "x86_64"))]
@@ -76,9 +76,9 @@ mod sse2 {
     impl Lanes4<f32> for Lanes {
         #[inline(always)]
         fn of_pairs(first: &[f32; 2], second: &[f32; 2]) -> Self {
-            // Two loads of eight bytes instead of the five that compilers make of four scalars.
-            // SAFETY: SSE2 is part of every x86-64; each reference is good for eight bytes, which are read without asking for alignment, and any
-            // bits are an f64.
+            // Two loads of eight bytes, instead of the five that compilers make of four scalars.
+            // SAFETY: SSE2 is part of every x86-64. Each reference is valid for reads of eight
+            // bytes, the reads need no alignment, and any bits are an `f64`.
             unsafe {
                 let pair = |pair: &[f32; 2]| pair.as_ptr().cast::<f64>().read_unaligned();
                 Self(_mm_castpd_ps(_mm_set_pd(pair(second), pair(first))))
@@ -112,8 +112,8 @@ mod sse2 {
         #[inline(always)]
         fn to_pairs_negating_second(self) -> [[f32; 2]; 2] {
             let mut lanes = [[0.0; 2]; 2];
-            // SAFETY: SSE2 is part of every x86-64; two pairs of scalars, written a pair at a time without asking for
-            // alignment.
+            // SAFETY: SSE2 is part of every x86-64. `lanes` has room for two pairs, each write is
+            // one pair long, and the writes need no alignment.
             unsafe {
                 let negated = _mm_xor_ps(self.0, _mm_set1_ps(-0.0));
                 lanes[0].as_mut_ptr().cast::<f64>().write_unaligned(_mm_cvtsd_f64(_mm_castps_pd(self.0)));
@@ -141,7 +141,7 @@ mod tests {
                     x.sub(L::splat(0.75)).mul(y).max(x).max(y).to_pairs_negating_second()
                 }
                 let bits = |lanes: [[f32; 2]; 2]| {
-                    // The payload of a NaN is nobody's promise.
+                    // The payload of a NaN is not guaranteed.
                     lanes.map(|pair| pair.map(|x| if x.is_nan() { u32::MAX } else { x.to_bits() }))
                 };
                 assert_eq!(bits(run::<F32Lanes4>(first, second)), bits(run::<[f32; 4]>(first, second)));

@@ -1,16 +1,16 @@
-//! No vector instructions asked for: four scalars in plain code.
+//! Four lanes in plain code, without vector instructions.
 #![expect(unused_unsafe, reason = "its operations are safe, those of instruction sets are not")]
 
 use crate::simd::isa::plain_isa;
 use crate::simd::vector::vector;
 
-/// Nothing to prove.
+/// The token of plain code, which needs no proof.
 #[derive(Clone, Copy, Debug)]
 pub struct Portable(());
 
 plain_isa!(Portable, F32x4, F64x4, runs_routines: false);
 
-/// The same for each of four lanes.
+/// Evaluates an expression for each of four lanes.
 macro_rules! each {
     ($k:ident => $value:expr) => {{
         let at = |$k: usize| $value;

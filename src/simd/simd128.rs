@@ -1,4 +1,4 @@
-//! WebAssembly's SIMD128.
+//! The SIMD128 instructions of WebAssembly.
 #![expect(unused_unsafe, reason = "its operations are safe, those of other instruction sets are not")]
 
 use crate::simd::Pair;
@@ -6,7 +6,7 @@ use crate::simd::isa::plain_isa;
 use crate::simd::vector::vector;
 use core::arch::wasm32::*;
 
-/// Proof of SIMD128.
+/// The token that proves SIMD128.
 #[derive(Clone, Copy, Debug)]
 pub struct Simd128(());
 

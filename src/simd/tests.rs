@@ -1,11 +1,15 @@
+//! Tests all vector operations against the plain operations on scalars.
+//!
 //! Every operation of every vector type of every instruction set that the processor has gives, lane
-//! by lane, the bits of the plain operation on scalars.
+//! by lane, the bits of the scalar operation.
 
 use super::{Backend, Halves, InstructionSet, Isa, Kernel, KernelLanes, Lanes};
 use crate::geometry::Scalar;
 use alloc::vec::Vec;
 
-/// Scalars at which operations differ that are nearly the same, each beside each in some turn.
+/// Returns scalars on which nearly equal operations differ.
+///
+/// Over all turns of two tables, each scalar is beside each.
 fn table<S: Scalar>(turn: usize) -> [S; 16] {
     let third = S::ONE / S::from_f64(3.0);
     let nan = S::from_f64(f64::NAN);
@@ -30,14 +34,14 @@ fn table<S: Scalar>(turn: usize) -> [S; 16] {
     core::array::from_fn(|lane| values[(lane + turn) % 16])
 }
 
-/// What is computed with in one turn.
+/// The operands of one turn.
 struct Operands<S> {
     a: [S; 16],
     b: [S; 16],
     c: [S; 16],
 }
 
-/// What the operations give: scalars that are made by rounding, others, and masks.
+/// The results of the operations: rounded scalars, copied scalars, and masks.
 #[derive(Debug, Default)]
 struct Results<S> {
     rounded: Vec<S>,
@@ -46,8 +50,9 @@ struct Results<S> {
 }
 
 impl<S: Scalar> Results<S> {
-    /// The payload and the sign of a NaN that is made are nobody's promise, those of one that is
-    /// moved are.
+    /// Compares two results.
+    ///
+    /// The payload and the sign of a computed NaN are not guaranteed, those of a copied NaN are.
     fn assert_same(&self, other: &Self, of: &str) {
         let rounded = |x: S| if x.is_nan() { u64::MAX } else { x.to_ordered_bits() };
         let same = |a: &[S], b: &[S], bits: &dyn Fn(S) -> u64| {
@@ -62,7 +67,7 @@ impl<S: Scalar> Results<S> {
     }
 }
 
-/// What scalars give, `count` of them.
+/// Returns the results of the first `count` lanes, computed by scalars.
 fn expected<S: Scalar>(operands: &Operands<S>, count: usize) -> Results<S> {
     let Operands { a, b, c } = operands;
     let mut results = Results::default();
@@ -88,7 +93,7 @@ fn expected<S: Scalar>(operands: &Operands<S>, count: usize) -> Results<S> {
     results.masks.push(mask(&|k| a[k] <= b[k] && a[k] < c[k]));
     results.masks.push(mask(&|k| a[k] <= b[k] || a[k] < c[k]));
     results.masks.push(mask(&|k| !(a[k] <= b[k] || a[k] < c[k])));
-    // What is ordered by bits.
+    // The operations that may compare bits.
     let [x, y] = [a, b].map(|row| row.map(positive));
     results.moved.extend(lanes(&|k| if x[k] > y[k] { x[k] } else { y[k] }));
     results.moved.extend(lanes(&|k| if x[k] < y[k] { x[k] } else { y[k] }));
@@ -97,12 +102,12 @@ fn expected<S: Scalar>(operands: &Operands<S>, count: usize) -> Results<S> {
     results
 }
 
-/// What vectors give.
+/// Returns the results of vectors.
 #[inline(always)]
 fn computed<S: Scalar, L: Lanes<S>>(isa: L::Isa, operands: &Operands<S>) -> Results<S> {
     assert!(L::COUNT <= 16);
     let mut results = Results::default();
-    // SAFETY: sixteen scalars, and no lanes are more.
+    // SAFETY: a row has sixteen scalars, and no vector has more lanes.
     let load = |row: &[S; 16]| unsafe { L::load(isa, row.as_ptr()) };
     let [a, b, c] = [load(&operands.a), load(&operands.b), load(&operands.c)];
     let lanes = |vector: L| {
@@ -117,7 +122,7 @@ fn computed<S: Scalar, L: Lanes<S>>(isa: L::Isa, operands: &Operands<S>) -> Resu
     for vector in [a + b, a - b, a * b, a / b, a.sqrt(), a * b + c] {
         results.rounded.extend(lanes(vector));
     }
-    // SAFETY: sixteen bytes.
+    // SAFETY: `BYTES` has sixteen bytes, and no vector has more lanes.
     let bytes = unsafe { L::load_bytes(isa, BYTES.as_ptr()) };
     for vector in [a, L::splat(isa, operands.a[0]), bytes, a.abs(), a.min(b), a.max(b), a.select(a.lt(b), c)]
     {
@@ -132,7 +137,7 @@ fn computed<S: Scalar, L: Lanes<S>>(isa: L::Isa, operands: &Operands<S>) -> Resu
     results.moved.extend(lanes(x.earlier(y)));
     let below = load(&operands.a.map(|x| -positive(x).next_up()));
     results.masks.extend([L::bits(x.not_after(y)), L::bits(x.not_after(below))]);
-    // The one operation that may be fused, so it is one of two.
+    // Only this operation may be fused, so its result is one of two.
     let fused = lanes(a.mul_add(b, c)).zip(lanes(a * b + c)).enumerate();
     for (k, (fused, twice)) in fused {
         let (a, b, c) = (operands.a[k], operands.b[k], operands.c[k]);
@@ -143,7 +148,7 @@ fn computed<S: Scalar, L: Lanes<S>>(isa: L::Isa, operands: &Operands<S>) -> Resu
     results
 }
 
-/// `a * b + c`, rounded once.
+/// Returns `a * b + c`, rounded once.
 fn rounded_once<S: Scalar>(a: S, b: S, c: S) -> S {
     #[cfg(feature = "std")]
     let (narrow, wide) = (f32::mul_add, f64::mul_add);
@@ -153,7 +158,7 @@ fn rounded_once<S: Scalar>(a: S, b: S, c: S) -> S {
     S::from_f64(if S::IS_WIDEST { wide(a, b, c) } else { f64::from(narrow(a as f32, b as f32, c as f32)) })
 }
 
-/// No NaN, and a plus sign.
+/// Returns a number that is not NaN and has a plus sign.
 fn positive<S: Scalar>(x: S) -> S {
     if x.is_nan() { S::ONE } else { x.abs() }
 }
@@ -169,7 +174,7 @@ impl<S: Scalar> Kernel for All<'_, S> {
     #[inline(always)]
     fn run<I: Isa>(self, isa: I) -> Self::Output {
         let row = self.0;
-        // SAFETY: eight scalars.
+        // SAFETY: a row has sixteen scalars, and eight are read.
         let whole = unsafe { S::Times8::<I>::load(isa, row.a.as_ptr()) };
         let [first, second] = whole.to_halves();
         let (mut scalars, mut halves) = ([S::ZERO; 8], [S::ZERO; 8]);

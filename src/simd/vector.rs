@@ -1,7 +1,9 @@
-//! What a vector type is made of: a list of its operations.
+//! The definition of a vector type, as a list of its operations.
 
-/// A vector type with its masks. Each holds the token, which is the proof that the processor has
-/// the instructions that its operations are written with.
+/// Defines a vector type and its mask type.
+///
+/// Each value holds the token, which proves that the processor has the
+/// instructions of its operations.
 macro_rules! vector {
     (
         $(#[$attribute:meta])*
@@ -64,13 +66,13 @@ macro_rules! vector {
             #[inline(always)]
             fn select(self, $else_mask: $mask, $else_b: Self) -> Self {
                 let ($else_a, $else_mask, $else_b) = (self.0, $else_mask.0, $else_b.0);
-                // SAFETY: the vector's token.
+                // SAFETY: the vector holds the token: the processor has the instructions.
                 Self(unsafe { $select }, self.1)
             }
             #[inline(always)]
             fn bits($bits_mask: $mask) -> u32 {
                 let $bits_mask = $bits_mask.0;
-                // SAFETY: the mask's token.
+                // SAFETY: the mask holds the token: the processor has the instructions.
                 unsafe { $bits }
             }
         }
@@ -81,23 +83,23 @@ macro_rules! vector {
 
             #[inline(always)]
             fn splat(isa: $isa, $splat_value: $scalar) -> Self {
-                // SAFETY: the token.
+                // SAFETY: the token proves that the processor has the instructions.
                 Self(unsafe { $splat }, isa)
             }
             #[inline(always)]
             unsafe fn load(isa: $isa, $load_from: *const $scalar) -> Self {
-                // SAFETY: the token; and so many scalars, by the caller's word.
+                // SAFETY: the token proves the instructions; the caller promises `COUNT` scalars.
                 Self(unsafe { $load }, isa)
             }
             #[inline(always)]
             unsafe fn load_bytes(isa: $isa, $bytes_from: *const u8) -> Self {
-                // SAFETY: the token; and so many bytes, by the caller's word.
+                // SAFETY: the token proves the instructions; the caller promises `COUNT` bytes.
                 Self(unsafe { $load_bytes }, isa)
             }
             #[inline(always)]
             fn store(self, to: &mut [$scalar]) {
                 let ($store_a, $store_to) = (self.0, to[..$count].as_mut_ptr());
-                // SAFETY: the vector's token; and a slice of so many scalars.
+                // SAFETY: the vector holds the token; the slice has `COUNT` scalars.
                 unsafe { $store }
             }
             #[inline(always)]
@@ -131,7 +133,7 @@ macro_rules! methods {
         $(#[inline(always)]
         fn $method(self $(, $other: Self)*) -> $result {
             let ($a, $($other,)*) = (self.0, $($other.0,)*);
-            // SAFETY: the vector's token.
+            // SAFETY: the value holds the token: the processor has the instructions.
             $result(unsafe { $value }, self.1)
         })*
     };

@@ -1,14 +1,18 @@
-//! What is known to lie ahead on a ray: boxes that are still to be opened, hits that were found in others.
+//! The queues of best-first search: boxes still to be opened, and hits found.
 
 use crate::geometry::Scalar;
 use alloc::collections::BinaryHeap;
 use core::cmp::Ordering;
 use core::mem;
 
-/// Boxes by where the ray enters them, and hits by (t, index): a queue for each, since boxes are small and many.
+/// Two queues: boxes by where the ray enters them, and hits by (t, index).
+///
+/// There is one for each, since boxes are small and many.
 pub struct BestFirst<S, B> {
-    /// Of the boxes that came last the nearest, most often the next: it is spared the way through the queue. None of the
-    /// others is nearer once [`next_box`](Self::next_box) has answered none.
+    /// The nearest of the boxes that were added since it was last taken.
+    ///
+    /// It is most often the next one, and so it is spared the way through the queue. Once
+    /// [`next_box`](Self::next_box) has returned `None`, no other box is nearer.
     at_hand: Option<Queued<S, B>>,
     boxes: BinaryHeap<Queued<S, B>>,
     pub(super) hits: HitQueue<S>,
@@ -17,15 +21,15 @@ pub struct BestFirst<S, B> {
 /// Hits, the first on top.
 pub type HitQueue<S> = BinaryHeap<QueuedHit<S>>;
 
-/// A hit by (t, index), with what its payload is made of.
+/// A hit by (t, index), with the details from which its payload is made.
 pub type QueuedHit<S> = Queued<(S, u32), Details<S>>;
 
-/// What a payload is made of.
+/// The source of a hit's payload.
 #[derive(Clone, Copy)]
 pub enum Details<S> {
-    /// By the leaf.
+    /// The details that the leaf's lane test has computed.
     OfLane([S; 3]),
-    /// It is kept under this number by whoever asked the primitive.
+    /// The number of the payload in the list of the leaf test that met the primitive.
     Kept(u32),
 }
 
@@ -36,18 +40,20 @@ impl<S: Scalar> QueuedHit<S> {
     }
 }
 
-/// Boxes for which there is room from the start, so that most queues are allocated once.
+/// Initial capacity for boxes, so that most queues are allocated once.
 const ROOM: usize = 32;
 
 impl<S: Scalar, B> BestFirst<S, B> {
-    /// Before the root is opened; none if the ray does not meet its box.
+    /// Returns the queues before the root is opened.
+    ///
+    /// `root` is `None` if the ray misses the root's box.
     pub fn new(root: Option<(B, S)>) -> Self {
         let room = if root.is_some() { ROOM } else { 0 };
         let at_hand = root.map(|(value, key)| Queued { key, value });
         Self { at_hand, boxes: BinaryHeap::with_capacity(room), hits: HitQueue::new() }
     }
 
-    /// Adds a box.
+    /// Adds a box, and where the ray enters it.
     #[inline(always)]
     pub fn add(&mut self, place: B, entry: S) {
         let mut new = Queued { key: entry, value: place };
@@ -62,14 +68,16 @@ impl<S: Scalar, B> BestFirst<S, B> {
         }
     }
 
-    /// Whether the first hit is the next one, or there is none: no hit lies before its box (the own-box rule), but a box
-    /// that is entered at the hit's t may hold one with a lower index.
+    /// Whether the first hit is the next one, or there is none.
+    ///
+    /// No hit is before the entry of its box (the own-box rule). But a box that is entered at the
+    /// hit's t may hold a hit with the same t and a lower index.
     #[inline(always)]
     pub fn is_settled(&self) -> bool {
         self.at_hand.as_ref().is_none_or(|first| self.hits.peek().is_some_and(|hit| hit.key.0 < first.key))
     }
 
-    /// The box to be opened next, unless all is settled.
+    /// Returns the box to be opened next, unless all is settled.
     #[inline(always)]
     pub fn next_box(&mut self) -> Option<B> {
         match &mut self.at_hand {
@@ -85,7 +93,7 @@ impl<S: Scalar, B> BestFirst<S, B> {
         if self.is_settled() { None } else { self.at_hand.take().map(|first| first.value) }
     }
 
-    /// The first of the hits that were found.
+    /// Takes the first of the hits that were found.
     #[inline(always)]
     pub fn next_hit(&mut self) -> Option<(S, u32, Details<S>)> {
         let Queued { key: (t, index), value } = self.hits.pop()?;
@@ -93,15 +101,16 @@ impl<S: Scalar, B> BestFirst<S, B> {
     }
 }
 
-/// What waits with its place in the queue: the smallest key comes first. No key holds a NaN.
+/// An entry of a queue: the smallest key comes first. No key holds a NaN.
 pub struct Queued<K, T> {
     key: K,
     value: T,
 }
 
 impl<K: PartialOrd, T> Ord for Queued<K, T> {
-    /// The other way round, since the queue takes out what is greatest. By `<` alone: with `partial_cmp` to take all hits takes
-    /// about a tenth longer.
+    /// Compares in reverse, since the heap takes out the greatest.
+    ///
+    /// It uses `<` alone: with `partial_cmp` a query for all hits takes about a tenth longer.
     #[inline(always)]
     fn cmp(&self, other: &Self) -> Ordering {
         if self.key < other.key {

@@ -4,14 +4,14 @@
 //! step: an inner node tests both children's boxes:
 //!         both met   the nearer is next, the farther goes on the stack with its entry distance
 //!         one met    it is next
-//!         none       pop
+//!         none met   pop
 //!       a leaf is visited, then pop
-//! pop:  entries beyond the closest hit so far, which may have shrunk since, are dropped
+//! pop:  entries beyond the closest hit so far, which may have moved nearer, are dropped
 //! ```
 //!
-//! Refused: choosing the children without branches (10 to 14 % fewer closest hits on two interiors, 1 to
-//! 6 % more shadow rays); prefetching the child that goes on the stack, and unchecked indexing (both
-//! within 3 %); vectors of three scalars instead of four lanes in the triangle test (up to 5 % fewer).
+//! Refused: to choose the children without branches; to prefetch the child that goes on the stack;
+//! unchecked indexing; in the triangle test, vectors of three scalars instead of four lanes
+//! (measured: docs/decisions.md, 32).
 
 use super::best_first::BestFirst;
 use super::binary_stack::Stack;
@@ -27,7 +27,9 @@ struct Deferred<S> {
     child: Child,
 }
 
-/// Shows the leaves whose boxes the ray meets, nearer children first, until `ask` breaks.
+/// Shows `leaf_test` the leaves whose boxes the ray meets, until it breaks.
+///
+/// Nearer children come first.
 #[inline(always)]
 pub(super) fn traverse<S: Scalar>(
     tree: &Tree<S>,
@@ -39,7 +41,7 @@ pub(super) fn traverse<S: Scalar>(
         Some(root) if slabs.entry(&tree.aabb).is_some_and(|entry| entry <= ray.ray.t_max) => root,
         _ => return ControlFlow::Continue(()),
     };
-    // One entry for each level at the most.
+    // At most one entry for each level.
     let mut memory = Stack::memory();
     let mut stack = Stack::<Deferred<S>, MAX_DEPTH>::new(&mut memory);
     loop {
@@ -94,7 +96,9 @@ fn leaf<S: Scalar>(
     leaf_test.test(LeafView { indices, rows: &[] }, ray)
 }
 
-/// Opens the boxes ahead of the ray, the nearest first, until nothing can come before the next hit.
+/// Opens the boxes ahead of the ray, nearest first, up to the next hit.
+///
+/// It stops when nothing can come before that hit.
 #[inline(always)]
 pub(super) fn open<S: Scalar>(
     tree: &Tree<S>,
@@ -106,7 +110,7 @@ pub(super) fn open<S: Scalar>(
     while let Some(child) = ahead.next_box() {
         if child.is_leaf() {
             ray.hits = core::mem::take(&mut ahead.hits);
-            // Whatever it finds, all of the leaf is asked.
+            // The whole leaf is tested, whatever the result.
             let _ = leaf(tree, child, ray, leaf_test);
             ahead.hits = core::mem::take(&mut ray.hits);
         } else {
@@ -122,15 +126,17 @@ pub(super) fn open<S: Scalar>(
     }
 }
 
-/// Where the ray enters the children's boxes, from t_min on, and which of them it meets up to `limit`.
+/// Returns where the ray enters the children's boxes, and which of them it meets.
+///
+/// Entries are at t_min or later. Only boxes that the ray meets up to `limit` count as met.
 #[inline(always)]
 pub(super) fn enter_children<S: Scalar>(node: &Node<S>, slabs: &Slabs<S>, limit: S) -> ([S; 2], [bool; 2]) {
     if slabs.t_min < S::ZERO {
-        // A copy: a reference would keep the slabs out of registers on every other way.
+        // A copy: a reference would keep the slabs out of registers on all other paths.
         let copy = *slabs;
         return enter_children_behind(node, &copy, limit);
     }
-    // One maximum serves both ends: the far side is computed with its sign turned.
+    // One maximum serves both ends: the far ends are computed with the opposite sign.
     let mut bounds = S::Lanes4::of_halves(slabs.t_min, -limit);
     for axis in 0..3 {
         let negative = usize::from(slabs.negative[axis]);
@@ -142,7 +148,9 @@ pub(super) fn enter_children<S: Scalar>(node: &Node<S>, slabs: &Slabs<S>, limit:
     (near, [near[0] <= far[0], near[1] <= far[1]])
 }
 
-/// The same for a ray that also looks behind its origin, where the padding has the other sign.
+/// The same for a ray that also looks behind its origin.
+///
+/// There the padding has the other sign.
 #[cold]
 #[inline(never)]
 fn enter_children_behind<S: Scalar>(node: &Node<S>, slabs: &Slabs<S>, limit: S) -> ([S; 2], [bool; 2]) {
@@ -165,7 +173,8 @@ mod tests {
 
     #[test]
     fn one_box_and_two_boxes_round_alike() {
-        // Distances that underflow when multiplied, on either side of the origin, and ordinary ones.
+        // Distances on both sides of the origin: some underflow when multiplied,
+        // others are ordinary.
         let values = [-1.0f32, -1e-45, -0.0, 0.0, 1e-45, 2e-45, 1e-38, 0.625, 1.0];
         let directions = [-2.0f32, -1.0, -0.0, 0.0, 0.5, 2.0];
         for t_min in [-3.0, 0.0, 1e-45] {

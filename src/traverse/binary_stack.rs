@@ -2,11 +2,12 @@
 
 use core::mem::MaybeUninit;
 
-/// At most `N` values, on the thread's stack. A query's stack is not cleared first: at 1 KiB that
-/// would take as long as several steps of the traversal.
+/// A stack of at most `N` values, on the thread's stack.
 ///
-/// The memory is borrowed: a length beside the values in one local would be kept in memory too,
-/// and each push would wait for the last one's store.
+/// It is not cleared first: at 1 KiB that would take as long as several steps of the traversal.
+///
+/// The memory is borrowed. If one local held both the length and the values, the length would be
+/// kept in memory too, and each push would wait for the store of the last one.
 pub(super) struct Stack<'m, T, const N: usize> {
     values: &'m mut [MaybeUninit<T>; N],
     /// `values[..len]` are initialised; only `push` and `pop` change it.
@@ -14,7 +15,7 @@ pub(super) struct Stack<'m, T, const N: usize> {
 }
 
 impl<'m, T: Copy, const N: usize> Stack<'m, T, N> {
-    /// What [`new`](Self::new) borrows.
+    /// Returns the memory that [`new`](Self::new) borrows.
     #[inline(always)]
     pub fn memory() -> [MaybeUninit<T>; N] {
         [const { MaybeUninit::uninit() }; N]
@@ -25,8 +26,11 @@ impl<'m, T: Copy, const N: usize> Stack<'m, T, N> {
         Self { values: memory, len: 0 }
     }
 
+    /// Puts a value on top.
+    ///
     /// # Panics
-    /// If `N` values are in it already.
+    ///
+    /// Panics if the stack already holds `N` values.
     #[inline(always)]
     pub fn push(&mut self, value: T) {
         self.values[self.len].write(value);
@@ -37,7 +41,8 @@ impl<'m, T: Copy, const N: usize> Stack<'m, T, N> {
     pub fn pop(&mut self) -> Option<T> {
         self.len = self.len.checked_sub(1)?;
         let value = self.values.get(self.len)?;
-        // SAFETY: `values[..len]` were initialised by `push` before `len` was lowered just now.
+        // SAFETY: `push` has initialised `values[..len]`, and `value` was in it until `len`
+        // was lowered above.
         Some(unsafe { value.assume_init() })
     }
 }

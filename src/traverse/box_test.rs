@@ -1,30 +1,37 @@
-//! The boxes of a wide node's children, tested all at once.
+//! The box test of a wide node: all its children's boxes at once.
 //!
-//! Minima, maxima and their comparison are those of integers where the processor has them: on an Intel Xeon (Granite Rapids)
-//! they take one cycle each, those of numbers up to four, one after the other. In an ordinary build, means of three scenes,
-//! closest hits were 1.03 to 1.06 times as quick with AVX2 and 1.01 to 1.03 with AVX-512, any hits 1.01 to 1.03 with either;
-//! in a build for that processor alone, all kinds of rays with AVX2 1.19 to 1.27. (In all of these t took one division instead
-//! of two, which is worth 0 to 1 % and was given up.)
+//! Minima, maxima and their comparison are those of integers where the processor has them. On an
+//! Intel Xeon (Granite Rapids) these take one cycle each, while those of floats take up to four,
+//! one after the other (measured: docs/decisions.md, 29).
 //!
-//! Refused: t of ordinary rays as one fused product and sum, place * slope + start, with slopes and starts padded for what that
-//! loses (a difference less to wait for in each step, 25 operations more for each ray: with AVX-512 0.95 to 1.00 of the rate, with AVX2
-//! 1.00 to 1.03). And to read a ray's scalars several at once: a nanosecond less, but 15 to 30 more where a ray is
-//! asked right after it was written, for a load wider than a pending store waits for the cache.
+//! Refused: t of ordinary rays as one fused product and sum, plane * slope + start, with slopes and
+//! starts padded for the precision that this loses. Each step waits for one subtraction less, but
+//! each ray needs 25 operations more (measured: docs/decisions.md, 30).
 //!
-//! # As integers
+//! Refused: to read several of a ray's scalars in one load. If the ray has just been
+//! written, the load is wider than the pending stores, and that defeats store forwarding
+//! (measured: docs/decisions.md, 31).
 //!
-//! Floats above -0 are ordered as their bits are, and all below +0, as integers, come before them. No t is NaN: planes and
-//! origin are none, and the inverses are finite and not zero. An entry is the largest of three t and t_min, which is not below
-//! +0: a t below is never taken, whichever of two. An exit is the smallest of three t and the limit: if one is below +0 so is
-//! what is taken, and the box is left out, which it has to be unless t is -0. So exits get a little more, by which none is -0.
-//! They are never before those of [`Slabs`], since rounding is monotone, once or twice: no box is left out that those meet.
-//! Boxes beyond may be met with one instruction set and not with another; answers are the same.
+//! # Comparison as integers
+//!
+//! Floats above -0 have the order of their bits. All floats below +0, as integers, come before
+//! them. No t is NaN: planes and origin are not NaN, and the inverses are finite and not zero.
+//!
+//! - An entry is the largest of three t and t_min, which is not below +0. So a t below +0 is never
+//!   the result, in whatever order those compare.
+//! - An exit is the smallest of three t and the limit. If one of them is below +0, so is the
+//!   result, and the box is left out. That is right unless the t is -0. So a small number is added
+//!   to each exit, and none is -0.
+//!
+//! The exits are never before those of [`Slabs`], since rounding is monotone, whether once or
+//! twice. So no box is left out that [`Slabs`] meets. Further boxes may be met with one instruction
+//! set and not with another, but answers are the same.
 
 use crate::geometry::{Ray, Scalar, Slabs};
 use crate::layout::WideNode;
 use crate::simd::{Isa, KernelLanes, Lanes};
 
-/// The slabs in lanes. If `AHEAD`, of rays that do not look behind their origin.
+/// The slab test of a ray in lanes. If `AHEAD`, the ray's t_min is not negative.
 pub(super) struct BoxTest<S, L, const AHEAD: bool> {
     origin: [L; 3],
     inv_near: [L; 3],
@@ -32,13 +39,18 @@ pub(super) struct BoxTest<S, L, const AHEAD: bool> {
     /// For each axis 1 if the near planes are the maxima, else 0.
     first: [usize; 3],
     t_min: S,
-    /// What is said above holds: inverses are finite, and neither t_min nor t_max has a minus sign. Later limits have none
-    /// either, since no hit's t has (see `primitive::accept` and the packed leaves).
+    /// Whether boxes may be compared as integers, as the module describes.
+    ///
+    /// The inverses are finite, and neither t_min nor t_max has a minus sign. Later limits have
+    /// none either, since no hit's t has one (see `primitive::accept` and the packed leaves).
     are_ordered_by_bits: bool,
 }
 
-/// [`Ray::is_ordinary`] in lanes, which hold the same: scalars are read one by one, so that those of a ray that was just
-/// written come straight from the stores. A compiler would read several at once, and wait for the cache.
+/// Returns [`Ray::is_ordinary`], computed in lanes.
+///
+/// All lanes hold the same value. The scalars are read one by one, so that the values of a ray that
+/// has just been written come straight from the stores. From scalar code a compiler would make
+/// wider loads, which wait for the cache.
 #[inline(always)]
 pub(super) fn is_ordinary<S: Scalar, I: Isa>(isa: I, ray: &Ray<S>) -> bool {
     let splat = |x: S| S::Times4::<I>::splat(isa, x);
@@ -57,7 +69,7 @@ pub(super) fn is_ordinary<S: Scalar, I: Isa>(isa: I, ray: &Ray<S>) -> bool {
 }
 
 impl<S: Scalar, L: Lanes<S>, const AHEAD: bool> BoxTest<S, L, AHEAD> {
-    /// `is_ordinary` is what the ray says.
+    /// Prepares the box test. `is_ordinary` is [`Ray::is_ordinary`] of the ray.
     #[inline(always)]
     pub fn new(isa: L::Isa, slabs: &Slabs<S>, is_ordinary: bool) -> Self {
         let &Slabs { origin, inv_near, inv_far, negative, t_min } = slabs;
@@ -67,7 +79,7 @@ impl<S: Scalar, L: Lanes<S>, const AHEAD: bool> BoxTest<S, L, AHEAD> {
             inv_near: splat(inv_near),
             inv_far: splat(inv_far),
             first: [usize::from(negative[0]), usize::from(negative[1]), usize::from(negative[2])],
-            // +0, whose bits are those of an integer.
+            // The sum turns -0 into +0, whose bits compare as those of an integer do.
             t_min: t_min + S::ZERO,
             are_ordered_by_bits: L::orders_by_bits(isa) && is_ordinary,
         }
@@ -79,14 +91,16 @@ impl<S: Scalar, L: Lanes<S>, const AHEAD: bool> BoxTest<S, L, AHEAD> {
         AHEAD || self.t_min >= S::ZERO
     }
 
-    /// Where the ray enters the children's boxes, from t_min on, and which of them it meets up to `limit`.
+    /// Returns where the ray enters the children's boxes, and the lanes of boxes met.
+    ///
+    /// Entries are at t_min or later. Only boxes that the ray meets up to `limit` count as met.
     #[inline(always)]
     pub fn enter<const N: usize>(&self, node: &impl WideNode<S, N>, ray: &Ray<S>, limit: S) -> (L, u32) {
         let isa = self.origin[0].isa();
         let (t_min, t_max) = (L::splat(isa, self.t_min), L::splat(isa, limit));
         if self.are_ordered_by_bits {
             debug_assert!(limit.total_cmp(&S::ZERO).is_ge(), "no limit is -0");
-            // No far plane is crossed at -0.
+            // The addend makes no exit -0.
             let after_zero = L::splat(isa, S::ONE / S::LARGE_VOLUME);
             let slab = |axis: usize, [first, last]: [L; 2]| {
                 (first * self.inv_near[axis], last.mul_add(self.inv_far[axis], after_zero))
@@ -101,7 +115,7 @@ impl<S: Scalar, L: Lanes<S>, const AHEAD: bool> BoxTest<S, L, AHEAD> {
             let (near, met) = enter_behind(node, ray, limit);
             (L::from_slice(isa, &near), met)
         } else {
-            // A plane through the origin, on an axis along which the ray does not move, is left out.
+            // On an axis along which the ray does not move, a plane through the origin is left out.
             let (mut near, mut far) = (t_min, t_max);
             for axis in 0..3 {
                 let [first, last] = self.distances(node, axis);
@@ -112,7 +126,7 @@ impl<S: Scalar, L: Lanes<S>, const AHEAD: bool> BoxTest<S, L, AHEAD> {
         }
     }
 
-    /// How far from the origin the near planes and the far planes across an axis are.
+    /// Returns the distances from the origin to the near and far planes across an axis.
     #[inline(always)]
     fn distances<T: WideNode<S, N>, const N: usize>(&self, node: &T, axis: usize) -> [L; 2] {
         let [first, last] = node.planes::<L>(self.origin[0].isa(), axis, self.first[axis]);
@@ -120,7 +134,9 @@ impl<S: Scalar, L: Lanes<S>, const AHEAD: bool> BoxTest<S, L, AHEAD> {
     }
 }
 
-/// The same for a ray that also looks behind its origin, where the padding has the other sign.
+/// The same for a ray that also looks behind its origin.
+///
+/// There the padding has the other sign.
 #[cold]
 #[inline(never)]
 fn enter_behind<S: Scalar, T: WideNode<S, N>, const N: usize>(

@@ -1,18 +1,23 @@
-//! Which of a node's children is next, and in what order the others wait.
+//! The order of a node's children: which one is next, and how the others wait.
 
 use super::traversal_stack::TraversalStack;
 use crate::geometry::Scalar;
 use crate::layout::{Reference, WideNode};
 use crate::simd::Lanes;
 
-/// So many are sorted, or written, without a branch: most nodes have no more that are met.
+/// A number of children that are sorted, or written, without a branch.
+///
+/// In most nodes no more are met.
 const FEW: usize = 4;
 
-/// The nearest of two children or more, which are entered at `near` in the lanes `met`; the others are pushed, the
-/// farthest first. Distances within 16 ulps of one another may change places.
+/// Pushes the met children but the nearest, farthest first; returns the nearest.
 ///
-/// In registers where the lanes can sort, which the entry distances of a ray that looks behind its origin do not suit; else
-/// a few as integers, and more one by one.
+/// There are at least two, which the ray enters at `near` in the lanes `met`. Distances within 16
+/// ulps of one another may change places.
+///
+/// They are sorted in registers where the lanes can sort, unless the ray looks behind its
+/// origin: its entry distances do not suit that. Otherwise a few are sorted as integers, and
+/// more than a few one by one.
 #[inline(always)]
 pub(super) fn nearest<S: Scalar, L: Lanes<S>, const N: usize>(
     node: &impl WideNode<S, N>,
@@ -39,8 +44,10 @@ pub(super) fn nearest<S: Scalar, L: Lanes<S>, const N: usize>(
     }
 }
 
-/// By a sorting network: one branch after another on which is nearer would be mispredicted half of the time (with AVX2 closest
-/// hits 1 to 7 % quicker).
+/// Does the same as [`nearest`] for a few children, by a sorting network.
+///
+/// One branch after another on which child is nearer would be mispredicted half of the time (with
+/// AVX2 closest hits are 1 to 7 % faster).
 #[inline(always)]
 fn nearest_of_few<S: Scalar, const N: usize>(
     node: &impl WideNode<S, N>,
@@ -49,7 +56,7 @@ fn nearest_of_few<S: Scalar, const N: usize>(
     stack: &mut TraversalStack<'_, S>,
 ) -> Reference {
     let count = met.count_ones() as usize;
-    // A distance but for its last bits, which are its lane. Behind those that there are, zeros.
+    // A key is a distance whose last bits are replaced by its lane. Unused keys are zero.
     let mut key = || {
         let is_there = met != 0;
         let lane = next_lane(&mut met) % 16;
@@ -96,7 +103,9 @@ fn nearest_of_many<S: Scalar, const N: usize>(
     node.children()[nearest % N]
 }
 
-/// The last of two children or more; the others are pushed as they lie in the node.
+/// Pushes all met children but the last, in the order of lanes; returns the last.
+///
+/// There are at least two.
 #[inline(always)]
 pub(super) fn last<S: Scalar, L: Lanes<S>, const N: usize>(
     isa: L::Isa,
@@ -123,7 +132,7 @@ pub(super) fn last<S: Scalar, L: Lanes<S>, const N: usize>(
     node.children()[last as usize % N]
 }
 
-/// Takes out the lowest lane; 32 if there is none.
+/// Takes out the lowest lane; returns 32 if there is none.
 #[inline(always)]
 pub(super) fn next_lane(met: &mut u32) -> usize {
     let lane = met.trailing_zeros() as usize;
@@ -131,7 +140,9 @@ pub(super) fn next_lane(met: &mut u32) -> usize {
     lane
 }
 
-/// Stored a line at a time: across two lines it takes a fifth more.
+/// The distances of a node's children, in one cache line if they are `f32`.
+///
+/// A store across two lines takes a fifth more time.
 #[repr(align(64))]
 pub(super) struct Distances<S>(pub [S; 16]);
 
@@ -152,7 +163,9 @@ mod tests {
 
     type Node = <Packed as Encoding<f32, 16>>::Node;
 
-    /// Distances with ties and zeros, all sets of children of two and more, below what was there before.
+    /// Distances with ties and zeros, and all sets of two or more children.
+    ///
+    /// The stack holds one entry before.
     #[test]
     fn children_are_pushed_farthest_first_and_none_is_lost() {
         let distances = Distances(core::array::from_fn(|lane| ((lane * 7 + 3) % 11) as f32 * 0.75));
@@ -171,7 +184,7 @@ mod tests {
                 let of = if is_few { nearest_of_few } else { nearest_of_many };
                 let mut lanes = vec![lane_of(of(&node, &distances, met, &mut stack))];
                 while stack.len() > 1 {
-                    // An entry is the child's own.
+                    // Its entry is the child's own distance.
                     let before = stack.len();
                     let lane = lane_of(stack.pop().unwrap());
                     stack.grow(1);

@@ -1,11 +1,13 @@
-//! The kernels that this crate compiles, in tables by scalar, layout and kind of leaf.
+//! Tables of the kernels that this crate compiles, by scalar, layout and leaf.
 //!
-//! Functions without type parameters are compiled in this crate, generic ones in that of whoever uses them: so each entry is a
-//! function of its own, made by a macro. A table is a constant, from which a query takes the one function that its types
-//! name: the others do not get into the user's program.
+//! Functions without type parameters are compiled in this crate, generic ones in the crate
+//! that uses them. So each entry is a function of its own, made by a macro. A table is a
+//! constant, from which a query takes the one function that its types name: the others do not
+//! get into the user's program.
 //!
-//! Where speed matters most, closest and any hits of packed trees, the leaf's test is inlined; all else has a loop that asks for
-//! each leaf, late-bound, so that there are as few loops as layouts, scalars and instruction sets make.
+//! Where speed matters most, in closest and any hits of packed trees, the leaf test is inlined. All
+//! else has a loop with a dynamic call for each leaf, so that there are only as many loops as
+//! layouts, scalars and instruction sets make.
 
 use super::best_first::BestFirst;
 use super::box_test::is_ordinary;
@@ -21,25 +23,25 @@ use crate::simd::{Backend, Isa, Kernel, LeafLanes, Routine};
 use crate::tree::{Child, Tree};
 use core::marker::PhantomData;
 
-/// A wide tree of one form.
+/// A wide tree of one encoding.
 type Wide<S, F> = WideTree<S, WIDTH, F>;
 
-/// Kernels for leaves whose operands say all of their primitives.
+/// Kernels for leaves whose operands describe their primitives completely.
 #[expect(clippy::type_complexity, reason = "a table of functions says what each takes")]
 pub struct PackedKernels<S, F> {
     pub closest: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>, &mut Found<S>),
     pub any: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>) -> bool,
-    /// Boxes are opened until the next hit is known, of a valid ray.
+    /// Opens the boxes ahead of a valid ray until the next hit is known.
     pub open:
         fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>, &mut BestFirst<S, Reference>) -> Counters,
-    /// The same as `closest` and `any`, with steps counted.
+    /// Does the same as `closest` and `any`, and counts the steps.
     pub counted: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>, IsClosest) -> (Found<S>, Counters),
 }
 
-/// Whether the closest hit is wanted, or any.
+/// Whether a query is for the closest hit, or for any.
 pub type IsClosest = bool;
 
-/// Kernels for leaves that are asked.
+/// Kernels that test each leaf by a dynamic call.
 #[expect(clippy::type_complexity, reason = "a table of functions says what each takes")]
 pub struct DynKernels<S, L, B> {
     pub closest: fn(&L, Backend, &mut RayState<S>, &mut dyn LeafTest<S>),
@@ -49,7 +51,7 @@ pub struct DynKernels<S, L, B> {
 
 /// All kernels for a scalar.
 pub trait ScalarKernels: Sized {
-    /// By `leaf::sealed::Kernel`.
+    /// The kernels of packed trees, indexed by `leaf::sealed::Kernel`.
     const PACKED: [PackedKernels<Self, Packed>; 4];
     const COMPACT: [PackedKernels<Self, Compact>; 4];
     const PACKED_DYN: DynKernels<Self, Wide<Self, Packed>, Reference>;
@@ -57,7 +59,7 @@ pub trait ScalarKernels: Sized {
     const BINARY: DynKernels<Self, Tree<Self>, Child>;
 }
 
-/// The kernels of a form of wide trees.
+/// The kernels of one encoding of wide trees.
 pub trait EncodingKernels<S: Scalar>: Encoding<S, WIDTH> {
     const IN_LANES: [PackedKernels<S, Self>; 4];
     const DYN: DynKernels<S, Wide<S, Self>, Reference>;
@@ -73,12 +75,12 @@ impl<S: Scalar> EncodingKernels<S> for Compact {
     const DYN: DynKernels<S, Wide<S, Self>, Reference> = S::COMPACT_DYN;
 }
 
-/// A query of one ray, the leaf's test inlined.
+/// A query of one ray, with the leaf test inlined.
 struct Inlined<'q, S, F, T, Q, K> {
     types: PhantomData<(&'q S, F, T, Q, K)>,
 }
 
-/// The kernels with a late-bound test.
+/// The kernels with a dynamic leaf test, where `Inlined` does not run.
 trait Fallback<S, F>: 'static {
     const KERNELS: PackedKernels<S, F>;
 }
@@ -126,9 +128,9 @@ impl<'q, S: Scalar, F: Encoding<S, WIDTH>, T: LaneTest<S>, Q: PackedQuery<S>, K:
     }
 }
 
-/// A query that can be put to a table of kernels.
+/// A query that can call its kernel in a table.
 trait PackedQuery<S: Scalar>: Query<S> {
-    /// Where the answer is written, if it is not returned.
+    /// The place where the answer is written, if it is not returned.
     type Room<'q>;
     type Answer;
 
@@ -186,20 +188,24 @@ impl<S: Scalar> PackedQuery<S> for Any<S> {
     }
 }
 
-/// What makes it safe to test leaves as those of `T`.
+/// Checks the number of operands: then leaves may be tested as those of `T`.
+///
+/// # Panics
+///
+/// Panics if the tree was built of primitives with another number of operands.
 #[inline(always)]
 fn check_operands<S: Scalar, F: Encoding<S, WIDTH>, T: LaneTest<S>>(tree: &Wide<S, F>) {
     assert!(tree.has_operands(T::OPERANDS), "a tree is queried for what it was built of");
 }
 
-/// Whether a ray that is not ordinary is valid, and lanes may be tested with it.
+/// Whether a ray that is not ordinary is valid, and suits the lanes' test.
 #[cold]
 #[inline(never)]
 fn suits<S: Scalar, T: LaneTest<S>>(ray: &Ray<S>) -> bool {
     ray.validate().is_ok() && T::suits(ray)
 }
 
-/// One ray, whose leaves are asked.
+/// A query of one ray, with a dynamic leaf test.
 struct DynWide<'q, S: Scalar, F: Encoding<S, WIDTH>, const IN_ORDER: bool> {
     tree: &'q Wide<S, F>,
     ray: &'q mut RayState<S>,
@@ -224,7 +230,7 @@ impl<S: Scalar, F: Encoding<S, WIDTH>, const IN_ORDER: bool> Kernel for DynWide<
     }
 }
 
-/// Boxes ahead of a valid ray, whose leaves are asked.
+/// A best-first search along a valid ray, with a dynamic leaf test.
 struct OpenWide<'q, S: Scalar, F: Encoding<S, WIDTH>> {
     tree: &'q Wide<S, F>,
     ray: &'q mut RayState<S>,
@@ -243,7 +249,7 @@ impl<S: Scalar, F: Encoding<S, WIDTH>> Kernel for OpenWide<'_, S, F> {
     }
 }
 
-/// A query of one ray whose leaves are tested by a late-bound call.
+/// Runs a query of one ray whose leaf test is `LaneLeafTest`.
 #[inline(always)]
 fn with_lane_test<S: Scalar, F: EncodingKernels<S>, T: LaneTest<S>>(
     tree: &Wide<S, F>,
@@ -262,7 +268,9 @@ fn with_lane_test<S: Scalar, F: EncodingKernels<S>, T: LaneTest<S>>(
     (Found { t: asked.ray.t_max, index: asked.index, details: asked.details }, asked.steps)
 }
 
-/// The part of the kernels in lanes that asks, for a scalar, a form and a test.
+/// Makes the kernels with a dynamic leaf test.
+///
+/// They are for a scalar, an encoding and a test.
 macro_rules! dynamic {
     ($scalar:ty, $form:ty, $test:ty) => {{
         type Tree = Wide<$scalar, $form>;
@@ -308,7 +316,9 @@ macro_rules! dynamic {
     }};
 }
 
-/// Kernels whose closest and any hits have the leaf's test inlined, for a scalar, a form and a test.
+/// Makes the kernels whose closest and any hits have the leaf test inlined.
+///
+/// They are for a scalar, an encoding and a test.
 macro_rules! inlined {
     ($scalar:ty, $form:ty, $test:ty) => {{
         type Tree = Wide<$scalar, $form>;
@@ -330,7 +340,7 @@ macro_rules! inlined {
     }};
 }
 
-/// Kernels for a scalar and a form that ask.
+/// Makes the kernels for leaves of any primitive, for a scalar and an encoding.
 macro_rules! dyn_leaves {
     ($scalar:ty, $form:ty) => {{
         type Tree = Wide<$scalar, $form>;
@@ -358,7 +368,9 @@ macro_rules! dyn_leaves {
     }};
 }
 
-/// Kernels for a scalar's binary tree: two boxes at a time, with the instructions that every processor has.
+/// Makes the kernels for a scalar's binary tree.
+///
+/// They test two boxes at a time, with the instructions that every processor of the target has.
 macro_rules! binary {
     ($scalar:ty) => {{
         type T = Tree<$scalar>;
@@ -381,7 +393,7 @@ macro_rules! binary {
         ) {
             binary::open(tree, ahead, ray, leaf_test);
         }
-        // Nearer children first, whatever is asked.
+        // Nearer children come first in any-hit queries too.
         DynKernels { closest, any: closest, open }
     }};
 }
@@ -404,7 +416,7 @@ impl ScalarKernels for f32 {
     const BINARY: DynKernels<Self, Tree, Child> = binary!(f32);
 }
 
-/// `f64` has no `Precise` triangles: in their place are the watertight ones.
+/// `f64` has no `Precise` triangles: the watertight kernels fill their place.
 impl ScalarKernels for f64 {
     const PACKED: [PackedKernels<Self, Packed>; 4] = {
         const WATERTIGHT: PackedKernels<f64, Packed> = inlined!(f64, Packed, WatertightLeaf);

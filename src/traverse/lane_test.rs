@@ -1,6 +1,8 @@
-//! Leaves whose operands say all of their primitives, tested by a late-bound call for each leaf.
+//! The leaf test in lanes, behind one dynamic call for each leaf.
 //!
-//! For queries that have no kernel with the test inlined: all hits, counted steps, compact trees, and what few ask for.
+//! It is for leaves whose operands describe their primitives completely, in queries that have no
+//! kernel with the test inlined: all hits, counted steps, compact trees, and rare kinds of rays,
+//! primitives and instruction sets.
 
 use super::best_first::{Details, QueuedHit};
 use super::child_order::next_lane;
@@ -11,7 +13,7 @@ use crate::simd::Backend;
 use core::marker::PhantomData;
 use core::ops::ControlFlow;
 
-/// What is wanted of the hits.
+/// The hits that a query asks for.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Wanted {
     Closest,
@@ -22,9 +24,9 @@ pub(super) enum Wanted {
 pub(super) struct LaneLeafTest<'q, S: Scalar, T: LaneTest<S>> {
     put: &'q dyn PutOperands<S>,
     wanted: Wanted,
-    /// None where lanes are no good for the ray.
+    /// The instruction set of the lanes; `None` if they do not suit the ray or tree.
     lanes: Option<Backend>,
-    /// Of the ray, once there has been a leaf.
+    /// The frame of the ray, computed at the first leaf.
     frame: Option<T::Frame>,
 }
 
@@ -33,7 +35,7 @@ impl<'q, S: Scalar, T: LaneTest<S>> LaneLeafTest<'q, S, T> {
         Self { put, wanted, lanes, frame: None }
     }
 
-    /// A hit in the ray's interval.
+    /// Takes a hit in the ray's interval.
     fn hit(&self, t: S, index: u32, details: [S; 3], ray: &mut RayState<S>) -> ControlFlow<()> {
         match self.wanted {
             Wanted::Closest => {

@@ -1,4 +1,6 @@
-//! What kernels ask of primitives whose type they do not know: one late-bound call for each leaf.
+//! Leaf tests by a dynamic call, for kernels that do not know the primitives' type.
+//!
+//! There is one call for each leaf.
 
 use super::best_first::HitQueue;
 use super::recorder::Counters;
@@ -9,35 +11,39 @@ use crate::primitive::precedes;
 use crate::simd::Backend;
 use core::ops::ControlFlow;
 
-/// A query, as far as it knows the type of its primitives.
+/// The part of a query that knows the type of its primitives.
 pub trait LeafTest<S> {
-    /// Tests the primitives of a leaf, and counts them. Breaks if nothing more needs to be visited.
+    /// Tests the primitives of a leaf and counts them.
+    ///
+    /// Breaks if nothing more has to be visited.
     fn test(&mut self, leaf: LeafView<'_, S>, ray: &mut RayState<S>) -> ControlFlow<()>;
 }
 
 /// The primitives of a leaf.
 #[derive(Clone, Copy)]
 pub struct LeafView<'q, S> {
-    /// By index in the input.
+    /// Their indices in the input.
     pub indices: &'q [u32],
-    /// Operands that lie in the leaf; none if they would have to be gathered.
+    /// Their operands if the leaf stores them, else empty: they have to be gathered.
     pub rows: &'q [[S; LEAF_WIDTH]],
 }
 
-/// A ray on its way, and what was hit so far.
+/// A ray on its way, with the hits that were found so far.
 pub struct RayState<S> {
-    /// Its interval ends at the closest hit so far, if the query is for the closest.
+    /// The ray. In a closest-hit query its interval ends at the closest hit so far.
     pub ray: Ray<S>,
     pub slabs: Slabs<S>,
-    /// The index of the closest hit so far; [`NO_PRIMITIVE`] if there is none.
+    /// The index of the closest hit so far, or [`NO_PRIMITIVE`] if there is none.
     pub index: u32,
-    /// What the payload of that hit is made of, if operands say all of the primitives.
+    /// The details from which the payload of that hit is made.
+    ///
+    /// They are used if operands describe the primitives completely.
     pub details: [S; 3],
     /// All hits, if the query is for all.
     pub hits: HitQueue<S>,
-    /// What was visited.
+    /// The steps taken.
     pub steps: Counters,
-    /// For tests in lanes; none where lanes are no good.
+    /// The instruction set for sieves; `None` where lanes cannot be tested.
     pub sieve: Option<Backend>,
 }
 
@@ -49,10 +55,10 @@ impl<S: Scalar> RayState<S> {
         Self { ray, slabs, index: NO_PRIMITIVE, details, hits, steps, sieve: None }
     }
 
-    /// Whether a hit in the ray's interval comes before the closest so far.
+    /// Whether a hit in the ray's interval comes before the closest hit so far.
     #[inline(always)]
     pub fn is_closer(&self, t: S, index: u32) -> bool {
-        // Without a hit the index is the largest, and its t the interval's end.
+        // Without a hit the index is the largest, and t_max is the interval's end.
         precedes(t, index, self.ray.t_max, self.index)
     }
 }

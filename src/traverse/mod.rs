@@ -1,12 +1,14 @@
-//! The kernels: one loop for each layout, compiled in this crate for each kind of leaf, scalar and instruction set, and for no
-//! type of primitive.
+//! The kernels: one traversal loop for each layout.
+//!
+//! They are compiled in this crate, for each kind of leaf, scalar and instruction set, and for
+//! no type of primitive.
 //!
 //! ```text
-//! query --> kernel: nodes by box_test and child_order, deferred ones on the traversal_stack
+//! query --> kernel: nodes by box_test and child_order, deferred children on the traversal_stack
 //!             at a leaf, a visitor:
 //!               settled in lanes   the leaf's own test (leaf::LaneTest)
-//!               asked              one late-bound call for all of the leaf's primitives (seam::LeafTest)
-//! query <-- t, index, and the details that the payload is made of
+//!               asked              one dynamic call for the whole leaf (leaf_test::LeafTest)
+//! query <-- t, index, and the details from which the payload is made
 //! ```
 
 mod best_first;

@@ -1,10 +1,12 @@
-//! Counting what queries do: free when nobody counts.
+//! Counters of the steps of queries, which are free if unused.
 
 use core::ops::AddAssign;
 
-/// Is told of each step of a query: once the query is done (all hits: each time that the next is known), all nodes, then all
-/// leaves, then all primitives. `()` records nothing and costs nothing; a query that is recorded takes a slower way to the same
-/// answer.
+/// A receiver of the steps of a query.
+///
+/// The steps are told when the query is done: all nodes, then all leaves, then all primitives. A
+/// query for all hits tells them each time that the next hit is known. `()` records nothing and
+/// costs nothing. A recorded query takes a slower way to the same answer.
 pub trait Recorder {
     /// A valid ray sets out.
     #[inline(always)]
@@ -18,7 +20,7 @@ pub trait Recorder {
     /// A primitive is tested.
     #[inline(always)]
     fn primitive(&mut self) {}
-    /// Whether it is to be told anything.
+    /// Whether it records anything.
     #[doc(hidden)]
     #[inline(always)]
     fn records(&self) -> bool {
@@ -56,8 +58,12 @@ impl<R: Recorder + ?Sized> Recorder for &mut R {
     }
 }
 
-/// Counts of rays and of what they visited; of many rays at once by [`Bvh::closest_hit_steps`](crate::Bvh::closest_hit_steps)
-/// and [`Bvh::any_hit_steps`](crate::Bvh::any_hit_steps).
+/// Counts of rays and of the nodes, leaves and primitives that they visited.
+///
+/// For many rays at once there are [`Bvh::closest_hit_steps`](crate::Bvh::closest_hit_steps) and
+/// [`Bvh::any_hit_steps`](crate::Bvh::any_hit_steps).
+///
+/// # Examples
 ///
 /// ```
 /// use bvhkit::{Bvh, Counters, Ray, Sphere};
@@ -70,33 +76,33 @@ impl<R: Recorder + ?Sized> Recorder for &mut R {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Valid rays.
+    /// The number of valid rays.
     pub rays: u64,
-    /// Inner nodes visited.
+    /// The number of inner nodes visited.
     pub nodes: u64,
-    /// Leaves visited.
+    /// The number of leaves visited.
     pub leaves: u64,
-    /// Primitives tested.
+    /// The number of primitives tested.
     pub primitives: u64,
 }
 
 impl Counters {
-    /// The mean number of inner nodes visited; 0 without rays.
+    /// Returns the mean number of inner nodes visited by a ray, 0 without rays.
     pub fn nodes_per_ray(&self) -> f64 {
         self.per_ray(self.nodes)
     }
 
-    /// The mean number of leaves visited; 0 without rays.
+    /// Returns the mean number of leaves visited by a ray, 0 without rays.
     pub fn leaves_per_ray(&self) -> f64 {
         self.per_ray(self.leaves)
     }
 
-    /// The mean number of primitives tested; 0 without rays.
+    /// Returns the mean number of primitives tested with a ray, 0 without rays.
     pub fn primitives_per_ray(&self) -> f64 {
         self.per_ray(self.primitives)
     }
 
-    /// Tells a recorder of as many steps.
+    /// Tells a recorder of this many steps.
     pub(crate) fn tell(&self, recorder: &mut impl Recorder) {
         (0..self.rays).for_each(|_| recorder.ray());
         (0..self.nodes).for_each(|_| recorder.node());

@@ -1,14 +1,17 @@
-//! The stack of a wide traversal: what was met and is still to be visited.
+//! The traversal stack of the wide trees: children that were met and deferred.
 
 use crate::layout::{MAX_STACK, Reference};
 use crate::simd::Window;
 use core::mem::MaybeUninit;
 
-/// With room for all lanes of one more node, of which some are written and not kept.
+/// The capacity, with room for all lanes of one more node.
+///
+/// Some of these lanes are written and not kept.
 const CAPACITY: usize = MAX_STACK + 16;
 
-/// Memory for [`TraversalStack`], on the thread's stack and not cleared. For `f32` it is below a page: above, every query
-/// would first touch it page by page.
+/// Memory for [`TraversalStack`], on the thread's stack and not cleared.
+///
+/// For `f32` it is smaller than a page: with more, every query would first touch it page by page.
 pub(super) struct Memory<S> {
     references: [MaybeUninit<Reference>; CAPACITY],
     entries: [MaybeUninit<S>; CAPACITY],
@@ -24,10 +27,12 @@ impl<S: Copy> Memory<S> {
     }
 }
 
-/// References, and where the ray enters their boxes. A last-in first-out stack.
+/// A stack of references, each with the t at which the ray enters its box.
 pub(super) struct TraversalStack<'m, S> {
     memory: &'m mut Memory<S>,
-    /// `references[..len]` are initialised, and of a query in order so are `entries[..len]`.
+    /// The number of references on the stack.
+    ///
+    /// `references[..len]` are initialised, and so are `entries[..len]` if the query is in order.
     len: usize,
 }
 
@@ -45,7 +50,8 @@ impl<'m, S: Copy + PartialOrd> TraversalStack<'m, S> {
     #[inline(always)]
     pub fn push(&mut self, reference: Reference, entry: S) {
         debug_assert!(self.len < CAPACITY);
-        // SAFETY: a path leaves at most `MAX_STACK` behind, by construction of the tree.
+        // SAFETY: no path defers more than `MAX_STACK` children: `layout::collapse`
+        // builds no such tree.
         unsafe {
             self.memory.references.get_unchecked_mut(self.len).write(reference);
             self.memory.entries.get_unchecked_mut(self.len).write(entry);
@@ -53,11 +59,14 @@ impl<'m, S: Copy + PartialOrd> TraversalStack<'m, S> {
         self.len += 1;
     }
 
-    /// Room for the lanes of a node above what is there; `grow` keeps some.
+    /// Returns space for all lanes of one node above the top.
+    ///
+    /// `grow` then keeps some of them.
     #[inline(always)]
     pub fn windows(&mut self) -> (&mut Window<Reference>, &mut Window<S>) {
         debug_assert!(self.len <= MAX_STACK);
-        // SAFETY: `len` is at most `MAX_STACK`, by construction of the tree: 16 more are inside.
+        // SAFETY: `len` is at most `MAX_STACK`, since `layout::collapse` builds no tree that needs
+        // more. So 16 more are inside of the memory.
         unsafe {
             (
                 &mut *self.memory.references.as_mut_ptr().add(self.len).cast(),
@@ -72,12 +81,14 @@ impl<'m, S: Copy + PartialOrd> TraversalStack<'m, S> {
         self.len += count;
     }
 
-    /// Moves the last one down past those above `base` that are nearer: the farthest is to be the lowest.
+    /// Moves the top down below the nearer ones, but not below `base`.
+    ///
+    /// So the farthest is the lowest.
     #[inline(always)]
     pub fn sink(&mut self, base: usize) {
         let (references, entries) = (&mut self.memory.references, &mut self.memory.entries);
         let mut place = self.len - 1;
-        // SAFETY: below `len` all are initialised.
+        // SAFETY: `push` has initialised the references and entries from `base` to `len`.
         while place > base && unsafe { entries[place - 1].assume_init() < entries[place].assume_init() } {
             references.swap(place - 1, place);
             entries.swap(place - 1, place);
@@ -85,7 +96,7 @@ impl<'m, S: Copy + PartialOrd> TraversalStack<'m, S> {
         }
     }
 
-    /// The last one.
+    /// Takes the top off the stack.
     #[inline(always)]
     pub fn pop(&mut self) -> Option<Reference> {
         let top = self.top()?;
@@ -93,20 +104,21 @@ impl<'m, S: Copy + PartialOrd> TraversalStack<'m, S> {
         Some(top)
     }
 
-    /// What [`pop`](Self::pop) would answer.
+    /// Returns the reference that [`pop`](Self::pop) would take.
     #[inline(always)]
     pub fn top(&self) -> Option<Reference> {
         let place = self.len.checked_sub(1)?;
-        // SAFETY: it is below `len`.
+        // SAFETY: it is below `len`, so it is initialised.
         Some(unsafe { self.memory.references.get_unchecked(place).assume_init() })
     }
 
-    /// The last one that begins at or before `limit`; those after it are dropped.
+    /// Takes the last one that begins at or before `limit`, and drops those above it.
     #[inline(always)]
     pub fn pop_before(&mut self, limit: S) -> Option<Reference> {
         loop {
             let reference = self.pop()?;
-            // SAFETY: it was below `len` just now.
+            // SAFETY: it was below `len` before `pop`, and entries below `len` are initialised in
+            // queries in order, which alone call this.
             let entry = unsafe { self.memory.entries.get_unchecked(self.len).assume_init() };
             if entry <= limit {
                 return Some(reference);

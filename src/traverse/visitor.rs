@@ -1,4 +1,4 @@
-//! What a query does at a leaf of a wide tree.
+//! The visitors of a wide tree: the work of a query at each leaf.
 
 use super::child_order::next_lane;
 use super::leaf_test::{LeafTest, LeafView, RayState};
@@ -10,21 +10,24 @@ use crate::simd::{Count, Isa, Lanes, LeafLanes, Width};
 use core::marker::PhantomData;
 use core::ops::ControlFlow;
 
-/// A query, as the wide loop sees it.
+/// A query, as the wide traversal loop uses it.
 pub(super) trait Visitor<S: Scalar> {
-    /// Whether nearer boxes should come first.
+    /// Whether nearer boxes have to be visited first.
     const IN_ORDER: bool;
 
-    /// What begins beyond this t is of no interest any more.
+    /// Returns the largest t that still counts: boxes entered beyond it are skipped.
     fn limit(&self) -> S;
 
-    /// A node is visited.
+    /// Is called for each node that is visited.
     #[inline(always)]
     fn node(&mut self) {}
 
-    /// Tests the primitives of a leaf whose box the ray enters before the limit. Breaks if nothing more needs to be visited.
+    /// Tests the primitives of a leaf whose box the ray enters before the limit.
+    ///
+    /// Breaks if nothing more has to be visited.
     ///
     /// # Safety
+    ///
     /// `leaf` is one of the tree's leaves.
     unsafe fn leaf<I: Isa, F: Encoding<S, N>, const N: usize>(
         &mut self,
@@ -36,27 +39,27 @@ pub(super) trait Visitor<S: Scalar> {
         Count<N>: Width;
 }
 
-/// What is wanted of the hits.
+/// A kind of query, closest or any, with the hit that it has found so far.
 pub(super) trait Query<S: Scalar>: Copy {
     const IN_ORDER: bool;
 
-    /// Nothing found yet.
+    /// Returns the query before any hit.
     fn of(ray: &Ray<S>) -> Self;
 
     fn limit(&self) -> S;
 
-    /// A hit up to the limit.
+    /// Takes a hit that is not beyond the limit.
     fn hit(&mut self, t: S, index: u32, details: impl FnOnce() -> [S; 3]) -> ControlFlow<()>;
 }
 
-/// The closest hit.
+/// The closest hit so far, as a query.
 #[derive(Clone, Copy)]
 pub struct Found<S> {
-    /// The end of the ray's interval if there is none.
+    /// The t of the hit, or the end of the ray's interval if there is none.
     pub t: S,
-    /// [`NO_PRIMITIVE`] if there is none.
+    /// The primitive's index, or [`NO_PRIMITIVE`] if there is none.
     pub index: u32,
-    /// What the payload is made of.
+    /// The details from which the payload is made.
     pub details: [S; 3],
 }
 
@@ -89,7 +92,7 @@ impl<S: Scalar> Query<S> for Found<S> {
     }
 }
 
-/// Any hit.
+/// The query for any hit.
 #[derive(Clone, Copy)]
 pub(super) struct Any<S> {
     pub t_max: S,
@@ -116,12 +119,12 @@ impl<S: Scalar> Query<S> for Any<S> {
     }
 }
 
-/// Leaves that have operands which say all of their primitives.
+/// The visitor of leaves whose operands describe their primitives completely.
 pub(super) struct PackedLeaves<'q, S: Scalar, T: LaneTest<S>, Q, W> {
     ray: &'q Ray<S>,
     slabs: &'q Slabs<S>,
     pub query: Q,
-    /// Of the ray, once there has been a leaf.
+    /// The frame of the ray, computed at the first leaf.
     frame: Option<T::Frame>,
     lanes: PhantomData<W>,
 }
@@ -151,7 +154,8 @@ impl<S: Scalar, T: LaneTest<S>, Q: Query<S>, W: LeafLanes> Visitor<S> for Packed
     where
         Count<N>: Width,
     {
-        // SAFETY: one of the tree's leaves, by the caller's word, and the kernel's entry has compared operands.
+        // SAFETY: the caller promises one of the tree's leaves. `check_operands` has compared the
+        // number of operands at the entry of the kernel.
         let indices = unsafe { F::indices(tree, leaf, T::OPERANDS) };
         // SAFETY: as above.
         let rows = unsafe { F::rows(tree, leaf, T::OPERANDS) };
@@ -186,7 +190,9 @@ impl<S: Scalar, T: LaneTest<S>, Q: Query<S>, W> PackedLeaves<'_, S, T, Q, W> {
     }
 }
 
-/// Tests some lanes by themselves, with a copy of the query: a reference to it would keep it in memory on every other way.
+/// Tests some lanes one by one, with a copy of the query.
+///
+/// A reference to the query would keep it in memory on all other paths too.
 #[cold]
 #[inline(never)]
 fn decide<S: Scalar, T: LaneTest<S>, Q: Query<S>>(
@@ -209,7 +215,7 @@ fn decide<S: Scalar, T: LaneTest<S>, Q: Query<S>>(
     (query, ControlFlow::Continue(()))
 }
 
-/// Leaves whose primitives are asked.
+/// The visitor of leaves that are tested by a dynamic call.
 pub(super) struct DynLeaves<'q, S: Scalar, const IN_ORDER: bool> {
     pub leaf_test: &'q mut dyn LeafTest<S>,
     pub ray: &'q mut RayState<S>,
@@ -238,7 +244,8 @@ impl<S: Scalar, const IN_ORDER: bool> Visitor<S> for DynLeaves<'_, S, IN_ORDER> 
     where
         Count<N>: Width,
     {
-        // SAFETY: one of the tree's leaves, by the caller's word.
+        // SAFETY: the caller promises one of the tree's leaves, and the number of
+        // operands is the tree's.
         let (indices, rows) =
             unsafe { (F::indices(tree, leaf, tree.operands()), F::rows(tree, leaf, tree.operands())) };
         let count =

@@ -1,13 +1,14 @@
 //! The traversal loop of the wide trees.
 //!
 //! ```text
-//! step: an inner node tests the boxes of all its children at once
+//! step: an inner node tests the boxes of all its children at once:
 //!         none met   pop
 //!         one met    it is next
-//!         more met   the nearest is next, the others go on the stack by entry distance, the nearest on top;
-//!                    if any hit will do, they go there as they lie in the node, and the last is next
-//!       a leaf tests its primitives, all at once if they are packed, then pop
-//! pop:  entries beyond the visitor's limit, which may have shrunk since, are dropped
+//!         more met   the nearest is next, the others go on the stack by entry distance, the
+//!                    nearest on top; if any hit will do, they go there in the order of their
+//!                    lanes, and the last is next
+//!       a leaf tests its primitives, all at once if there is a lane test for them, then pop
+//! pop:  entries beyond the visitor's limit, which may have moved nearer, are dropped
 //! ```
 
 use super::best_first::BestFirst;
@@ -20,8 +21,9 @@ use crate::layout::{Encoding, Outline, Reference, WideNode, WideTree};
 use crate::simd::{Count, Isa, KernelLanes, Width};
 use core::mem::take;
 
-/// Shows `visitor` the leaves whose boxes a valid ray meets, until it breaks. `is_ordinary` is what the ray says;
-/// if `AHEAD` its t_min is not negative.
+/// Shows `visitor` the leaves whose boxes a valid ray meets, until it breaks.
+///
+/// `is_ordinary` is [`Ray::is_ordinary`] of the ray. If `AHEAD`, its t_min is not negative.
 #[inline(always)]
 pub(super) fn traverse<S: Scalar, I: Isa, F: Encoding<S, N>, const N: usize, const AHEAD: bool>(
     isa: I,
@@ -38,14 +40,17 @@ pub(super) fn traverse<S: Scalar, I: Isa, F: Encoding<S, N>, const N: usize, con
     let fetches = tree.is_large();
     let mut memory = Memory::new();
     let mut stack = TraversalStack::new(&mut memory);
-    // SAFETY: `next` is the tree's root, or a child of one of its nodes.
+    // SAFETY: `next` is the tree's root, or a child of one of its nodes, and so
+    // is all on the stack.
     while let Some(place) = unsafe { step(isa, tree, next, ray, &boxes, &mut stack, visitor, fetches) } {
         next = place;
     }
 }
 
-/// Opens the boxes ahead of a valid ray, the nearest first, until nothing can come before the next hit. Hits of leaves are in
-/// `ray.hits` until the leaf's end.
+/// Opens the boxes ahead of a valid ray, nearest first, up to the next hit.
+///
+/// It stops when nothing can come before that hit. While a leaf is tested, the
+/// hits are in `ray.hits`.
 #[inline(always)]
 pub(super) fn open<S: Scalar, I: Isa, F: Encoding<S, N>, const N: usize>(
     isa: I,
@@ -60,8 +65,8 @@ pub(super) fn open<S: Scalar, I: Isa, F: Encoding<S, N>, const N: usize>(
     while let Some(place) = ahead.next_box() {
         if place.is_leaf() {
             visitor.ray.hits = take(&mut ahead.hits);
-            // Whatever it finds, all of the leaf is tested.
-            // SAFETY: `ahead` has the tree's root, and children of its nodes.
+            // The whole leaf is tested, whatever the result.
+            // SAFETY: `ahead` holds the tree's root and children of its nodes.
             let _ = unsafe { visitor.leaf(isa, tree, place) };
             ahead.hits = take(&mut visitor.ray.hits);
         } else {
@@ -74,8 +79,9 @@ pub(super) fn open<S: Scalar, I: Isa, F: Encoding<S, N>, const N: usize>(
             while met != 0 {
                 let lane = next_lane(&mut met);
                 let child = node.children()[lane % N];
-                // Most that is met will be opened, and others before it, so there is time to fetch it: all hits of
-                // 300,000 triangles take a quarter to two fifths less.
+                // Most boxes that are met will be opened, and others before them, so there is time
+                // to fetch them. With this, all hits of 300,000 triangles take a quarter to two
+                // fifths less time.
                 F::prefetch(tree, child);
                 ahead.add(child, entries.0[lane % 16]);
             }
@@ -83,7 +89,7 @@ pub(super) fn open<S: Scalar, I: Isa, F: Encoding<S, N>, const N: usize>(
     }
 }
 
-/// Where a ray begins, if it has to.
+/// Returns the reference at which a ray begins, if it may meet the tree.
 #[inline(always)]
 fn first<S: Scalar, F: Encoding<S, N>, const N: usize>(
     tree: &WideTree<S, N, F>,
@@ -91,7 +97,7 @@ fn first<S: Scalar, F: Encoding<S, N>, const N: usize>(
     limit: S,
 ) -> Option<Reference> {
     let root = tree.root()?;
-    // The boxes of a node's children will tell whether it is met.
+    // The boxes of an inner root's children will tell whether it is met.
     if root.is_leaf() && !meets(&tree.aabb(), ray, limit) {
         return None;
     }
@@ -104,12 +110,13 @@ fn meets<S: Scalar>(aabb: &Aabb<S>, ray: &Ray<S>, limit: S) -> bool {
     Slabs::new(ray).entry(aabb).is_some_and(|entry| entry <= limit)
 }
 
-/// A scalar for each child of a node.
+/// A vector with one scalar for each child of a node.
 type Row<S, I, const N: usize> = <Count<N> as Width>::Lanes<S, I>;
 
-/// Visits a place, and tells which is next, if any is.
+/// Visits a node or a leaf, and returns the next one, if there is any.
 ///
 /// # Safety
+///
 /// `place` is one of the tree's nodes or leaves, and so are those on the stack.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "a loop's state, in registers")]
@@ -127,13 +134,13 @@ where
     Count<N>: Width,
 {
     if place.is_leaf() {
-        // SAFETY: the caller's word.
+        // SAFETY: the caller promises that `place` is one of the tree's leaves.
         if unsafe { visitor.leaf(isa, tree, place) }.is_break() {
             return None;
         }
     } else {
         visitor.node();
-        // SAFETY: the caller's word.
+        // SAFETY: the caller promises that `place` is one of the tree's nodes.
         let node = unsafe { tree.node(place) };
         let (near, met) = boxes.enter(node, ray, visitor.limit());
         if met != 0 {
@@ -154,9 +161,10 @@ where
     next
 }
 
-/// PackedQuery for what will be popped next but for what the next step pushes: it has that step's time to come. On an Intel Xeon
-/// closest hits were 1.00 to 1.05 times as quick (random rays 1.04 to 1.14), any hits 0.98 to 1.05, in trees of 13 to 17 MB. In
-/// trees that the cache holds they are as much slower on a Zen 5 machine.
+/// Prefetches the stack's top, which is popped next unless the next step pushes.
+///
+/// Its memory has the time of that step to arrive. This pays in large trees alone
+/// (measured: docs/decisions.md, 33).
 #[inline(always)]
 fn fetch_top<S: Scalar, F: Encoding<S, N>, const N: usize>(
     fetches: bool,

@@ -1,15 +1,17 @@
-//! The claim that all tests come back to: every tree answers as the naive loop does, bit for bit.
+//! Asserts that every tree answers as the naive loop does, bit for bit.
 
 use super::answers::Payload;
 use super::heuristics;
 use super::naive::Naive;
 use bvhkit::{Bvh, Intersect, Optimise, Ray, Tree};
 
-/// Small, ordinary, and one leaf for everything.
+/// Maximum leaf sizes: small, ordinary, and one leaf for everything.
 const LEAF_SIZES: [usize; 5] = [1, 2, 4, 8, usize::MAX];
 
-/// Builds a tree with every heuristic and leaf size, binary and as it is by default, checks it, and
-/// compares its answers with the naive loop's. Invalid primitives are skipped. Returns the number of hits.
+/// Compares trees with the naive loop and returns the number of hits.
+///
+/// Builds with every heuristic and leaf size, in the binary and the default layout, and checks each
+/// tree. Invalid primitives are skipped.
 pub fn assert_agreement<P: Intersect<Payload: Payload>>(primitives: &[P], rays: &[Ray<P::Scalar>]) -> usize {
     let naive = Naive::new(primitives, rays);
     for (name, heuristic) in heuristics::all() {

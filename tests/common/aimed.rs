@@ -1,10 +1,10 @@
-//! A fixed soup of triangles, and rays aimed at what is hard to hit.
+//! A fixed soup of triangles, and rays at targets that are hard to hit.
 
 use bvhkit::{Aabb, Ray, Scalar, Triangle};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// `n` triangles of about half the size of the cube of all, from -1 to 1.
+/// Returns `n` triangles in the cube from -1 to 1, each about half its size.
 pub fn soup(n: usize) -> Vec<[[f64; 3]; 3]> {
     let mut rng = Pcg64Mcg::seed_from_u64(n as u64);
     let mut point = |size: f64| [0.0; 3].map(|_| rng.random_range(-size..size));
@@ -15,7 +15,7 @@ pub fn soup(n: usize) -> Vec<[[f64; 3]; 3]> {
     (0..n).map(|_| triangle()).collect()
 }
 
-/// The soup with every coordinate changed, by the triangle's index and the coordinate.
+/// Returns the soup, with `change` applied to each triangle's index and coordinate.
 pub fn triangles<S: Scalar>(soup: &[[[f64; 3]; 3]], change: impl Fn(usize, f64) -> f64) -> Vec<Triangle<S>> {
     let point = |i: usize, point: [f64; 3]| point.map(|x| S::from_f64(change(i, x)));
     soup.iter()
@@ -24,8 +24,10 @@ pub fn triangles<S: Scalar>(soup: &[[[f64; 3]; 3]], change: impl Fn(usize, f64) 
         .collect()
 }
 
-/// For each triangle: rays from another's corner to a corner, an edge and the middle, and one along
-/// an axis in two planes of its box.
+/// Returns four rays for each triangle.
+///
+/// Three go from a corner of another triangle to a corner, the middle of an edge and the inside.
+/// One goes along an axis through a corner, often in planes of the triangle's box.
 pub fn aimed<S: Scalar>(triangles: &[Triangle<S>]) -> Vec<Ray<S>> {
     let half = |a: [S; 3], b: [S; 3]| [0, 1, 2].map(|k| a[k] * S::HALF + b[k] * S::HALF);
     let bounds = Aabb::of_points(triangles.iter().flat_map(|t| [t.a, t.b, t.c]));

@@ -1,4 +1,6 @@
-//! A primitive that shares no leaf with its like, so that unlike ones fit behind one pointer.
+//! A wrapper for primitives that are tested one by one.
+//!
+//! Wrapped primitives share no packed leaf, so different types fit behind one pointer.
 
 use bvhkit::{Aabb, Intersect, OneByOne, Primitive, Ray};
 

@@ -1,4 +1,4 @@
-//! Answers as bits, so that trees and the naive loop can be compared without any tolerance.
+//! Answers as bits, to compare trees with the naive loop without tolerance.
 
 use bvhkit::{Barycentrics, Bvh, Hit, Intersect, Ray, Scalar, Traverse, reference};
 
@@ -31,14 +31,14 @@ impl<S: Scalar> Payload for [S; 3] {
     }
 }
 
-/// The bits of t, the index, the bits of the payload.
+/// The bits of t, the index, and the bits of the payload.
 pub type Key = (u64, usize, [u64; 3]);
 
 pub fn key<S: Scalar>(hit: Hit<S, impl Payload>) -> Key {
     (hit.t.to_f64().to_bits(), hit.index, hit.payload.bits())
 }
 
-/// All that can be asked about a ray.
+/// The answers to all queries for one ray.
 #[derive(Debug, PartialEq)]
 pub struct Answers {
     pub closest: Option<Key>,

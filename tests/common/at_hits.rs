@@ -2,7 +2,7 @@
 
 use bvhkit::{Intersect, Ray, reference};
 
-/// The rays, and again those that hit something with such intervals.
+/// Returns the rays, and again each ray that hits, with intervals at its hit.
 pub fn at_hits<P: Intersect>(primitives: &[P], mut rays: Vec<Ray<P::Scalar>>) -> Vec<Ray<P::Scalar>> {
     for i in 0..rays.len() {
         let ray = rays[i];

@@ -1,4 +1,4 @@
-//! Closed meshes whose triangles share the very bits of their corners, and rays from inside them.
+//! Closed meshes with bitwise equal shared corners, and rays from inside them.
 
 use bvhkit::{Ray, Scalar, Triangle};
 use rand::{RngExt, SeedableRng};
@@ -7,16 +7,16 @@ use std::f64::consts::{PI, TAU};
 
 type Point = [f64; 3];
 
-/// Corners, triangles of them, and points that are inside by a good part of the size.
+/// A closed mesh, and points that are well inside it.
 pub struct Closed {
     vertices: Vec<Point>,
     faces: Vec<[usize; 3]>,
     inside: Vec<Point>,
-    /// About its radius.
+    /// The approximate radius.
     size: f64,
 }
 
-/// A grid of quadrilaterals, each of two triangles, both ways round it.
+/// Returns two triangles for each quadrilateral of a grid with cyclic columns.
 fn quads(columns: usize, rows: usize) -> impl Iterator<Item = [usize; 3]> {
     (0..rows).flat_map(move |row| (0..columns).map(move |column| (row, column))).flat_map(
         move |(row, column)| {
@@ -28,7 +28,7 @@ fn quads(columns: usize, rows: usize) -> impl Iterator<Item = [usize; 3]> {
     )
 }
 
-/// A sphere of radius 1 around the origin: 16 meridians, 10 rings, two poles.
+/// Returns a sphere of radius 1 around the origin: 16 meridians, 10 rings, 2 poles.
 pub fn sphere() -> Closed {
     let (columns, rings) = (16, 10);
     let mut vertices: Vec<Point> = (0..columns * rings)
@@ -47,7 +47,7 @@ pub fn sphere() -> Closed {
     Closed { vertices, faces, inside: vec![[0.0; 3], [0.25, 0.0, 0.0], [0.1, -0.3, 0.57]], size: 1.0 }
 }
 
-/// A torus with dents, in the xy plane.
+/// Returns a torus with dents, in the xy plane.
 pub fn torus() -> Closed {
     let (columns, rows) = (10, 20);
     let around = |i: usize| TAU * i as f64 / rows as f64;
@@ -59,9 +59,9 @@ pub fn torus() -> Closed {
             [radius * u.cos(), radius * u.sin(), tube * v.sin()]
         })
         .collect();
-    // The last row is the first.
+    // The last row of quadrilaterals ends at the first row of vertices.
     let faces = quads(columns, rows).map(|face| face.map(|i| i % (columns * rows))).collect();
-    // Along the middle of the tube, but not in the plane of a ring.
+    // Along the middle of the tube, just above the plane z = 0 with its ring of vertices.
     let inside = [0.5, 7.25, 13.0].map(|i| {
         let u: f64 = TAU * i / rows as f64;
         [0.65 * u.cos(), 0.65 * u.sin(), 0.01]
@@ -70,7 +70,7 @@ pub fn torus() -> Closed {
 }
 
 impl Closed {
-    /// With each coordinate multiplied and shifted.
+    /// Returns the mesh with each coordinate multiplied and shifted.
     pub fn moved(self, scale: f64, shift: Point) -> Self {
         let moved = |point: Point| [0, 1, 2].map(|k| point[k] * scale + shift[k]);
         Self {
@@ -81,14 +81,15 @@ impl Closed {
         }
     }
 
-    /// Each corner is rounded once, alike for all its triangles.
+    /// Returns the triangles. A corner is rounded once, alike for all its triangles.
     pub fn triangles<S: Scalar>(&self) -> Vec<Triangle<S>> {
         let corner = |i: usize| self.vertices[i].map(S::from_f64);
         self.faces.iter().map(|&[a, b, c]| Triangle::new(corner(a), corner(b), corner(c))).collect()
     }
 
-    /// From each point inside at each corner, the middle of each edge and two random points of it, and
-    /// along the axes both ways.
+    /// Returns rays from each inside point to corners and edges, and along the axes.
+    ///
+    /// Each edge has targets in its middle and at two random points. Each axis has rays both ways.
     pub fn rays<S: Scalar>(&self) -> Vec<Ray<S>> {
         let mut rng = Pcg64Mcg::seed_from_u64(self.faces.len() as u64);
         let mut rays = Vec::new();

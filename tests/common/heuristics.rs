@@ -1,4 +1,4 @@
-//! The heuristics that every test of agreement runs through, one of them hostile.
+//! The heuristics that every test of agreement uses, one of them hostile.
 
 use super::hostile::Hostile;
 use bvhkit::Scalar;
@@ -6,9 +6,9 @@ use bvhkit::heuristic::{
     BinnedSah, Clustered, Heuristic, Median, Midpoint, Morton, SahCost, SpatialSah, SweepSah,
 };
 
-/// Every heuristic of the crate and [`Hostile`], with a name for messages.
+/// Returns every heuristic of the crate and [`Hostile`], with names for messages.
 pub fn all<S: Scalar>() -> Vec<(&'static str, Box<dyn Heuristic<S>>)> {
-    // A dear step and a cheap test: leaves as large as they may be.
+    // A step is expensive and a test is cheap, so leaves are as large as allowed.
     let lazy = SahCost { traversal: 100.0, intersection: 0.1 };
     let cutting = SpatialSah { overlap: 0.0, growth: 2.0, ..SpatialSah::default() };
     vec![

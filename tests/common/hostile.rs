@@ -1,9 +1,9 @@
-//! The worst heuristic there is.
+//! The most hostile heuristic.
 
 use bvhkit::heuristic::{BuildNode, Heuristic, Split};
 use bvhkit::{Axis, Scalar};
 
-/// Proposes whatever a driver might trip over, another thing at each node.
+/// Proposes splits that could break a driver, a different one at each node.
 pub struct Hostile;
 
 impl<S: Scalar> Heuristic<S> for Hostile {

@@ -1,6 +1,6 @@
-//! One claim, one test for each mode.
+//! A macro that repeats a test in each mode.
 
-/// A test for each mode, out of a function with the mode as its type parameter.
+/// Defines a test for each mode from a function that is generic over the mode.
 macro_rules! in_every_mode {
     ($($name:ident)*) => {
         $(mod $name {

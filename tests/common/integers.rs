@@ -1,4 +1,4 @@
-//! Rays and triangles in whole numbers: what exact arithmetic says of them.
+//! Exact ray-triangle tests in whole numbers.
 
 use bvhkit::{Scalar, Triangle};
 
@@ -16,19 +16,20 @@ fn cross(a: Point, b: Point) -> Point {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The t at which the line meets the triangle, edges and corners included, coplanar ones excluded.
-/// The nearest `f64` to the exact fraction.
+/// Returns the t at which a line meets the triangle, rounded to the nearest `f64`.
+///
+/// Edges and corners are inside. A line in the triangle's plane misses it.
 pub fn exact_t([a, b, c]: [Point; 3], origin: Point, direction: Point) -> Option<f64> {
     let [a, b, c] = [a, b, c].map(|corner| sub(corner, origin));
     let normal = cross(sub(b, a), sub(c, a));
     let det = dot(normal, direction);
-    // Which side of each edge the line passes.
+    // The signs tell on which side of each edge the line passes.
     let sides = [cross(c, b), cross(a, c), cross(b, a)].map(|plane| dot(plane, direction));
     let inside = sides.iter().all(|&side| side >= 0) || sides.iter().all(|&side| side <= 0);
     (det != 0 && inside).then(|| f64::from(dot(normal, a)) / f64::from(det))
 }
 
-/// The point in a scalar in which it is exact.
+/// Converts a point to a scalar in which it is exact.
 pub fn point<S: Scalar>(point: Point) -> [S; 3] {
     point.map(|x| S::from_f64(f64::from(x)))
 }
@@ -37,8 +38,10 @@ pub fn triangle<S: Scalar>([a, b, c]: [Point; 3]) -> Triangle<S> {
     Triangle::new(point::<S>(a), point::<S>(b), point::<S>(c))
 }
 
-/// Panics unless the hits found, by index and t, are those expected: no more, no fewer, each t within 8 epsilon,
-/// sorted, and none before one that exactly comes first. `expected` is sorted by index.
+/// Asserts that the hits found, by index and t, are those expected.
+///
+/// There must be no more and no fewer, each t within 8 epsilon of the expected one, sorted, and
+/// none before one that exactly comes first. `expected` is sorted by index.
 pub fn assert_exact<S: Scalar>(
     found: &[(usize, S)],
     expected: &[(usize, f64)],

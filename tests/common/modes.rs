@@ -1,13 +1,15 @@
-//! The modes of testing a triangle, so that a claim is tested in each of them.
+//! The triangle modes, so that a claim can be tested in each of them.
 
 use bvhkit::{Barycentrics, Fast, Intersect, Precise, Scalar, Triangle, Watertight};
 use std::fmt::Debug;
 
-/// A triangle in a mode, made of a bare one. [`Triangle`] by itself is the watertight mode.
+/// A triangle in a mode, made from a plain one.
+///
+/// A plain [`Triangle`] is itself in the watertight mode.
 pub trait Mode:
     Intersect<Payload = Barycentrics<<Self as Mode>::Number>, Scalar = Self::Number> + Copy + Debug
 {
-    /// Its scalar, under a name that needs no detour.
+    /// The scalar, under a name that needs no path through the supertraits.
     type Number: Scalar;
 
     fn of(triangle: Triangle<Self::Number>) -> Self;

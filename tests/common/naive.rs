@@ -1,11 +1,11 @@
-//! The naive loop's answers, and hierarchies held to them.
+//! Answers of the naive loop, and hierarchies compared with them.
 
 use super::answers::{Answers, Payload};
 use bvhkit::heuristic::Heuristic;
 use bvhkit::{Builder, Bvh, Intersect, MAX_DEPTH, OnInvalid, Ray, Traverse};
 use std::fmt;
 
-/// Primitives, rays, and what the naive loop answers.
+/// Primitives, rays, and the answers of the naive loop.
 pub struct Naive<'a, P: Intersect> {
     primitives: &'a [P],
     rays: &'a [Ray<P::Scalar>],
@@ -22,12 +22,12 @@ impl<'a, P: Intersect<Payload: Payload>> Naive<'a, P> {
         Self { primitives, rays, answers }
     }
 
-    /// The number of hits, so that a test can tell that it has tested something.
+    /// Returns the number of hits, so that a test can show that it tested something.
     pub fn hits(&self) -> usize {
         self.answers.iter().map(|answers| answers.hits.len()).sum()
     }
 
-    /// Builds over the primitives, without invalid ones, checks the hierarchy, and compares its answers.
+    /// Builds over the valid primitives, checks the hierarchy and compares its answers.
     pub fn assert_same<H: Heuristic<P::Scalar>, L: Traverse<&'a P>>(
         &self,
         builder: Builder<&'a P, H, L>,
@@ -42,13 +42,13 @@ impl<'a, P: Intersect<Payload: Payload>> Naive<'a, P> {
         bvh
     }
 
-    /// The invariants, and a report that fits.
+    /// Checks the invariants and the report.
     fn assert_well_formed<L: Traverse<&'a P>>(&self, bvh: &Bvh<&'a P, L>) {
         bvh.check().unwrap();
         let report = bvh.report();
         assert_eq!(report.primitives, bvh.len());
         assert_eq!(bvh.len() + bvh.skipped().len(), self.primitives.len());
-        // Each inner node has two children or more.
+        // Each inner node has at least two children.
         assert!(if bvh.is_empty() { report.leaves == 0 } else { report.leaves > report.inner_nodes });
         assert_eq!(report.leaf_sizes.histogram.iter().sum::<usize>(), report.leaves);
         assert!(report.max_depth <= MAX_DEPTH);

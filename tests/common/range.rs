@@ -1,4 +1,4 @@
-//! What the modes say of themselves.
+//! The documented ranges of the modes.
 
 use super::modes::Mode;
 use bvhkit::{Fast, Precise, Triangle, Watertight};

@@ -1,19 +1,21 @@
-//! Rays and triangles in rational numbers, by the meeting point: first where the line meets the plane,
-//! then whether that point lies in the triangle, as seen along an axis.
+//! Ray-triangle tests in rational numbers, by the meeting point.
+//!
+//! The test finds the point where the line meets the plane. Then it decides whether the point is in
+//! the triangle, with both projected along an axis.
 
 use bvhkit::{Ray, Scalar, Triangle};
 use num_rational::BigRational;
 
 type Point = [BigRational; 3];
 
-/// Where a line meets a triangle's plane.
+/// The point where a line meets a triangle's plane.
 pub struct Meeting {
     pub t: BigRational,
-    /// The largest of the negated barycentrics of the point there: at most 0 in the triangle.
+    /// The largest of the point's negated barycentrics: at most 0 in the triangle.
     pub slack: BigRational,
 }
 
-/// `None` for NaN and infinities.
+/// Converts a number exactly; `None` for NaN and infinities.
 pub fn exact<S: Scalar>(x: S) -> Option<BigRational> {
     BigRational::from_float(x.to_f64())
 }
@@ -34,14 +36,15 @@ fn size(x: &BigRational) -> BigRational {
     x.clone().max(-x)
 }
 
-/// `None` if they are parallel, or anything is invalid.
+/// Returns where line and plane meet; `None` if parallel, or for invalid input.
 pub fn meeting<S: Scalar>(triangle: &Triangle<S>, ray: &Ray<S>) -> Option<Meeting> {
     let (a, b, c) = (point(triangle.a)?, point(triangle.b)?, point(triangle.c)?);
     let (origin, direction) = (point(ray.origin)?, point(ray.direction)?);
-    // NaN is ordered with nothing.
+    // Rejects empty intervals, and NaN, which has no order.
     ray.t_min.partial_cmp(&ray.t_max).filter(|order| order.is_le())?;
     let zero = BigRational::default();
-    // Twice the area of p q r, seen along an axis; the three views of a triangle make its normal.
+    // Twice the area of p q r, projected along an axis. The three projections of a triangle are
+    // the components of its normal.
     let area = |axis: usize, p: &Point, q: &Point, r: &Point| {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         (&q[i] - &p[i]) * (&r[j] - &p[j]) - (&q[j] - &p[j]) * (&r[i] - &p[i])
@@ -60,7 +63,7 @@ pub fn meeting<S: Scalar>(triangle: &Triangle<S>, ray: &Ray<S>) -> Option<Meetin
 }
 
 impl Meeting {
-    /// Whether the point is in the triangle and t in the ray's interval.
+    /// Returns whether the point is in the triangle and t in the ray's interval.
     pub fn is_hit<S: Scalar>(&self, ray: &Ray<S>) -> bool {
         let from_start = exact(ray.t_min).map_or(ray.t_min < S::ZERO, |t_min| t_min <= self.t);
         let to_end = exact(ray.t_max).map_or(ray.t_max > S::ZERO, |t_max| self.t <= t_max);
@@ -68,8 +71,9 @@ impl Meeting {
     }
 }
 
-/// Whether `x` is the nearest number to `value`, ties to even, by the middles between it and its
-/// neighbours.
+/// Returns whether `x` is the number nearest to `value`, ties to even.
+///
+/// Compares `value` with the midpoints between `x` and its neighbours.
 pub fn is_nearest<S: Scalar>(x: S, value: &BigRational) -> bool {
     let two = BigRational::from_integer(2.into());
     let largest = S::INFINITY.next_down();
@@ -88,14 +92,16 @@ pub fn is_nearest<S: Scalar>(x: S, value: &BigRational) -> bool {
     if even { below <= *value && *value <= above } else { below < *value && *value < above }
 }
 
-/// The distance between the neighbours in `S` of `value`, to which `nearest` is the nearest.
+/// Returns the distance between the neighbours in `S` of `value`.
+///
+/// `nearest` is the number nearest to `value`.
 pub fn spacing<S: Scalar>(nearest: S, value: &BigRational) -> BigRational {
     let mut below = nearest.abs();
     if exact(below).unwrap() > size(value) {
         below = below.next_down();
     }
     let neighbours = exact(below.next_up()).zip(exact(below));
-    // The largest number has no finite neighbour above; its spacing is that below it.
+    // The largest number has no finite neighbour above it, so its spacing is the one below it.
     let neighbours = neighbours.or_else(|| exact(below).zip(exact(below.next_down())));
     neighbours.map(|(above, below)| above - below).unwrap()
 }

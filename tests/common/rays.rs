@@ -1,4 +1,4 @@
-//! As many rays into a scene as one likes, each a function of its number.
+//! Any number of rays into a scene; each ray is a function of its number.
 
 use crate::scene::Shape;
 use bvhkit::{Aabb, Primitive, Ray};
@@ -6,7 +6,7 @@ use glam::Vec3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// Where rays of a scene come from and go to.
+/// A source of rays for a scene.
 pub struct Aims<'a> {
     shapes: &'a [Shape],
     bounds: Aabb,
@@ -18,8 +18,10 @@ impl<'a> Aims<'a> {
         Self { shapes, bounds }
     }
 
-    /// By turns: between two points of the scene's box, at a corner, at an edge, and through a corner
-    /// along an axis.
+    /// Returns the ray of a number; four kinds of rays take turns.
+    ///
+    /// A ray goes between two points of the scene's box, to a corner, to an edge, or
+    /// along an axis through a corner.
     pub fn ray(&self, number: u64) -> Ray {
         let rng = &mut Pcg64Mcg::seed_from_u64(number);
         let origin = self.point(rng);
@@ -39,14 +41,14 @@ impl<'a> Aims<'a> {
         }
     }
 
-    /// In the scene's box, or a little outside.
+    /// Returns a point in the scene's box, or slightly outside.
     fn point(&self, rng: &mut impl Rng) -> Vec3 {
         let (min, max) = (Vec3::from(self.bounds.min), Vec3::from(self.bounds.max));
         let fraction = Vec3::from_array([0; 3].map(|_| rng.random_range(-0.1..1.1)));
         min + (max - min) * fraction
     }
 
-    /// Three points of a shape to aim at.
+    /// Returns three points of a random shape.
     fn corners(&self, rng: &mut impl Rng) -> [Vec3; 3] {
         match self.shapes[rng.random_range(0..self.shapes.len())] {
             Shape::Triangle(triangle) => [triangle.a, triangle.b, triangle.c],

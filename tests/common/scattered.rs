@@ -4,7 +4,7 @@ use bvhkit::{Scalar, Triangle};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// No two alike.
+/// Returns `n` random triangles, no two of them alike.
 pub fn triangles<S: Scalar>(n: usize) -> Vec<Triangle<S>> {
     let mut rng = Pcg64Mcg::seed_from_u64(n as u64);
     let mut point = |size: f64| [0.0; 3].map(|_: f64| rng.random_range(-size..size));

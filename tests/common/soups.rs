@@ -1,15 +1,15 @@
-//! Soups of triangles of every kind that is hard on a tree, and rays at what is hard to hit.
+//! Triangle soups that are hard for a tree, and rays at targets hard to hit.
 
 use bvhkit::{Ray, Scalar, Triangle};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// How many kinds of soup there are.
+/// The number of kinds of soups.
 pub const KINDS: usize = 8;
 
 type Point = [f64; 3];
 
-/// Some triangles of a kind, counted from 0.
+/// Returns `n` triangles of a kind, which is a number below [`KINDS`].
 pub fn soup<S: Scalar>(kind: usize, n: usize, rng: &mut Pcg64Mcg) -> Vec<Triangle<S>> {
     let mut point = |size: f64| [0.0; 3].map(|_: f64| rng.random_range(-size..size));
     let whole = |point: Point| point.map(f64::round);
@@ -27,25 +27,27 @@ pub fn soup<S: Scalar>(kind: usize, n: usize, rng: &mut Pcg64Mcg) -> Vec<Triangl
                 let [a, b, c] = around(2.0);
                 [a, b, [0, 1, 2].map(|k| b[k] + 1e-6 * (c[k] - a[k]))]
             }
-            // Each of its own size, up to 1e12 times another.
+            // Each triangle has its own size, up to 1e12 times that of another.
             4 => around(0.5).map(|p| p.map(|x| x * 10f64.powi(i as i32 % 13 - 6))),
             5 => around(0.5).map(|p| p.map(|x| x + 1e7)),
-            // Close to the ends of the range of f32.
+            // Coordinates close to both ends of the range of f32.
             6 => around(0.5).map(|p| p.map(|x| x * if i.is_multiple_of(2) { 1e-36 } else { 1e36 })),
             _ => around(0.5),
         }
     };
     let mut corners: Vec<[Point; 3]> = (0..n).map(&mut triangle).collect();
     if kind == KINDS - 1 {
-        // The same four times.
+        // Each triangle occurs four times.
         corners = (0..n).map(|i| corners[i / 4]).collect();
     }
     let corner = |p: Point| p.map(S::from_f64);
     corners.into_iter().map(|[a, b, c]| Triangle::new(corner(a), corner(b), corner(c))).collect()
 }
 
-/// From a corner or beside it, at a corner, an edge or the middle of some triangle, or along an axis in two
-/// planes of its box; now and then within an interval.
+/// Returns a ray at a corner, an edge or the inside of some triangle.
+///
+/// It starts at a corner, inside a triangle or elsewhere. Some rays go along an axis through the
+/// target, often in planes of the triangle's box. Some have an interval.
 pub fn ray<S: Scalar>(soup: &[Triangle<S>], rng: &mut Pcg64Mcg) -> Ray<S> {
     let mut pick = || soup[rng.random_range(0..soup.len())];
     let (from, to) = (pick(), pick());

@@ -1,11 +1,13 @@
-//! The ray test that everybody starts with, as a yardstick: rays that find no gap in it are no good at
-//! finding gaps.
+//! The ray test of textbooks, as a yardstick.
+//!
+//! Rays that find no gap in this test are no good at finding gaps.
 
 use bvhkit::{Aabb, Intersect, OneByOne, Primitive, Ray, Triangle};
 use glam::Vec3;
 
-/// A triangle tested as Moller and Trumbore (Fast, Minimum Storage Ray/Triangle Intersection, 1997) do, but
-/// for their epsilon.
+/// A triangle with the ray test of Moller and Trumbore, without their epsilon.
+///
+/// Fast, Minimum Storage Ray/Triangle Intersection, 1997.
 #[derive(Clone, Copy)]
 pub struct Textbook(pub Triangle);
 

@@ -1,18 +1,22 @@
-//! No leak: a ray from inside a closed mesh hits it, at every corner and edge, whatever the size, the
-//! place and the company of the mesh. In the modes that promise it; the fast one agrees with itself.
+//! No leak: a ray from inside a closed mesh hits it, at every corner and edge.
+//!
+//! This holds for any size and place of the mesh, beside any other mesh, in the modes that promise
+//! it. Fast triangles answer as their own naive loop.
 
 use crate::common::answers::{Answers, key};
 use crate::common::closed::{Closed, sphere, torus};
 use crate::common::range::Range;
 use bvhkit::{Bvh, Fast, Precise, Ray, Scalar, Triangle, Watertight};
 
-/// Powers of two by which directions are multiplied: the aim stays what it is.
+/// Exponents of the powers of two that scale directions; they keep the aim.
 const LENGTHS: [i32; 3] = [-40, 0, 12];
 
-/// The rays by turns in several lengths, as far as their directions stay in the mode's range.
+/// Returns the rays, their directions scaled by [`LENGTHS`] in turn.
+///
+/// Rays whose directions leave the mode's range are left out.
 fn lengths<M: Range>(rays: &[Ray<M::Number>]) -> Vec<Ray<M::Number>> {
     let lengthened = |(i, ray): (usize, &Ray<M::Number>)| {
-        // No multiple of what the kinds of rays repeat by.
+        // 7 is not a multiple of the period in which the kinds of rays repeat.
         let factor = M::Number::from_f64(2f64.powi(LENGTHS[i / 7 % 3]));
         Ray { direction: ray.direction.map(|x| x * factor), ..*ray }
     };
@@ -23,8 +27,9 @@ fn lengths<M: Range>(rays: &[Ray<M::Number>]) -> Vec<Ray<M::Number>> {
     rays.iter().enumerate().map(lengthened).filter(fits).collect()
 }
 
-/// The number of the rays whose first hit is none of the first `closed` triangles. Of every 40th ray all answers
-/// are compared with the naive loop's.
+/// Returns how many rays do not first hit one of the first `closed` triangles.
+///
+/// For every 40th ray, all answers are compared with the naive loop's.
 fn leaks<M: Range>(scene: &[Triangle<M::Number>], closed: usize, rays: &[Ray<M::Number>]) -> usize {
     let scene: Vec<_> = scene.iter().copied().map(M::of).collect();
     let bvh = Bvh::build(&scene).unwrap();
@@ -80,7 +85,7 @@ fn fast_answers_as_its_naive_loop_at_all_sizes_and_leaks_little() {
     for exponent in (-12..=12).step_by(6) {
         let fast = alone::<Fast<Triangle>>(10f64.powi(exponent), [0.0; 3]);
         let double = alone::<Fast<Triangle<f64>>>(10f64.powi(8 * exponent), [0.0; 3]);
-        // Of some 20,000 rays at edges and corners, not one in a hundred.
+        // Fewer than one in a hundred of some 20,000 rays at edges and corners.
         assert!(fast < 200 && double < 200, "{fast} and {double} at 1e{exponent}");
     }
 }
@@ -99,12 +104,13 @@ fn far_from_the_origin() {
     }
 }
 
-/// A teapot's worth of sphere in a stadium, itself a closed mesh: from inside the one it is hit, from between
-/// them either is.
+/// Asserts that a teapot-sized sphere in a closed stadium has no leaks.
+///
+/// A ray from inside the sphere hits the sphere. A ray from between the two hits either.
 fn in_a_stadium<M: Range>() {
     for size in [1e4, 1e5, 1e6] {
         let at = [0.3 * size, -0.2 * size, 0.1 * size];
-        // Large enough that its rounded corners still surround its middle.
+        // So large that the sphere's rounded corners still surround its center.
         let (teapot, stadium) = (sphere().moved(4.0, at), torus().moved(size / 0.6, [0.65 * size, 0.0, 0.0]));
         let triangles = teapot.triangles();
         let count = triangles.len();
@@ -128,13 +134,15 @@ fn a_teapot_in_a_stadium() {
     in_a_stadium::<Watertight<Triangle<f64>>>();
 }
 
-/// Meshes one around the other, sizes from 1e-6 to 1e6: from inside each it is the first that is hit.
+/// Asserts that spheres inside each other, of sizes 1e-6 to 1e6, have no leaks.
+///
+/// A ray from inside a sphere first hits that sphere or a smaller one.
 fn nested<M: Range>() {
     let meshes: Vec<_> = (-6..=6).map(|exponent| sphere().moved(10f64.powi(exponent), [0.0; 3])).collect();
     let scene: Vec<_> = meshes.iter().flat_map(Closed::triangles).collect();
     let count = scene.len() / meshes.len();
     for (i, mesh) in meshes.iter().enumerate() {
-        // From the mesh's own inside, but outside of all smaller ones.
+        // From inside the mesh itself, but outside all smaller meshes.
         let rays: Vec<_> = mesh.rays().into_iter().filter(|ray| ray.origin[0] != M::Number::ZERO).collect();
         assert_eq!(leaks::<M>(&scene, count * (i + 1), &lengths::<M>(&rays)), 0, "{i}");
     }

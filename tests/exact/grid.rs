@@ -1,5 +1,7 @@
-//! Every triangle with corners on a small grid, every ray between its points along {-1, -0, +0, 1}^3, in every mode,
-//! against exact arithmetic in integers: edges, corners, coplanar faces and triangles without area by the thousand.
+//! Every triangle on a small grid, against exact arithmetic in integers.
+//!
+//! Rays go from grid points along {-1, -0, +0, 1}^3, in every mode. They meet edges, corners,
+//! coplanar faces and triangles without area by the thousand.
 
 use crate::common::integers::{self, Point, assert_exact, exact_t};
 use crate::common::modes::Mode;
@@ -10,8 +12,9 @@ fn grid(range: std::ops::Range<i32>) -> Vec<Point> {
     all().flat_map(|x| all().flat_map(move |y| all().map(move |z| [x, y, z]))).collect()
 }
 
-/// Every choice of three corners from the grid, the same one twice or thrice too, each wound and turned in
-/// one of the six ways.
+/// Returns every choice of three corners, equal ones included.
+///
+/// The triangles take turns through the six orders of their corners.
 fn triangles(corners: &[Point]) -> Vec<[Point; 3]> {
     let mut triangles = Vec::new();
     for (i, &a) in corners.iter().enumerate() {
@@ -29,16 +32,16 @@ fn triangles(corners: &[Point]) -> Vec<[Point; 3]> {
     triangles
 }
 
-/// {-1, -0, +0, 1}^3 but for the zeros.
+/// Returns {-1, -0, +0, 1}^3 without its zero vectors.
 fn directions() -> Vec<[f64; 3]> {
     let components = grid(0..4).into_iter().map(|point| point.map(|i| [-1.0, -0.0, 0.0, 1.0][i as usize]));
     components.filter(|&direction| direction != [0.0; 3]).collect()
 }
 
-/// The scene in one mode, in a tree of its own.
+/// A tree over the scene in one mode.
 struct Tree<M: Mode>(Bvh<M>);
 
-/// What a mode answers, whatever its scalar.
+/// A tree in any mode, with the query hidden behind the type of its scalar.
 trait Asked {
     fn check(&self, origin: Point, direction: [f64; 3], t_min: f64, expected: &[(usize, f64)]);
 }
@@ -61,7 +64,7 @@ fn check(corners: std::ops::Range<i32>, origins: std::ops::Range<i32>, step: usi
     fn tree<M: Mode + 'static>(scene: &[[Point; 3]]) -> Box<dyn Asked> {
         let triangles = scene.iter().map(|&corners| M::of(integers::triangle(corners)));
         let bvh = Bvh::build(triangles).unwrap();
-        // Triangles without area stay counted.
+        // Triangles without area are counted too.
         assert_eq!(bvh.len(), scene.len());
         Box::new(Tree(bvh))
     }

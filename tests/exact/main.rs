@@ -1,5 +1,7 @@
-//! Tests against exact arithmetic, and that closed meshes leak nothing. Apart from the others, so that they can also be run as built
-//! for one processor alone, where numbers could be fused or reordered.
+//! Tests against exact arithmetic, and tests that closed meshes do not leak.
+//!
+//! They are a program of their own, so that they can also run as built for a single processor, for
+//! which the compiler could fuse or reorder operations.
 
 #[path = "../common"]
 mod common {

@@ -1,4 +1,4 @@
-//! The exact oracle against a second method in another implementation of big numbers.
+//! The exact oracle against a second method with other big numbers.
 
 use crate::common::aimed::{aimed, soup, triangles};
 use crate::common::rational::{self, Meeting, is_nearest, spacing};
@@ -13,7 +13,7 @@ fn value(t: &Fraction) -> BigRational {
     t.to_string().parse().unwrap()
 }
 
-/// All answers of the oracle for a scene; returns the number of hits.
+/// Compares all answers of the oracle for a ray; returns the number of hits.
 fn assert_agrees<S: Scalar>(scene: &[Triangle<S>], ray: &Ray<S>) -> usize {
     let meetings: Vec<_> = scene.iter().map(|triangle| rational::meeting(triangle, ray)).collect();
     for (triangle, meeting) in scene.iter().zip(&meetings) {
@@ -47,7 +47,7 @@ fn assert_agrees<S: Scalar>(scene: &[Triangle<S>], ray: &Ray<S>) -> usize {
     found.len()
 }
 
-/// Rounding and its error.
+/// Checks the rounding of t, and its error.
 fn assert_rounds<S: Scalar>(t: &Fraction, exact_t: &BigRational) {
     let rounded = t.to_scalar::<S>();
     assert!(is_nearest(rounded, exact_t), "{t} to {rounded:?}");
@@ -63,7 +63,7 @@ fn assert_rounds<S: Scalar>(t: &Fraction, exact_t: &BigRational) {
     }
 }
 
-/// Intervals that begin or end at the nearest number to t, or at the numbers next to it.
+/// Checks intervals that begin or end at the number nearest to t, or next to it.
 fn assert_ends_agree<S: Scalar>(triangle: &Triangle<S>, ray: &Ray<S>, meeting: &Meeting) {
     let t = exact::intersect(triangle, ray).unwrap().to_scalar::<S>();
     for end in [t.next_down(), t, t.next_up()] {
@@ -78,8 +78,9 @@ fn assert_ends_agree<S: Scalar>(triangle: &Triangle<S>, ray: &Ray<S>, meeting: &
 const AHEAD: (f64, f64) = (0.0, f64::INFINITY);
 const LINE: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
-/// Corners and origins from {-1, 0, 1}^3, all directions from {-1, -0, 0, 1}^3, a scene of its own for
-/// each ray.
+/// Checks small whole coordinates; each ray has a scene of its own.
+///
+/// Corners and origins are from {-1, 0, 1}^3. Directions are all of {-1, -0, 0, 1}^3.
 fn grid<S: Scalar>(mut next: usize) -> usize {
     let point = |i: usize| [i % 3, i / 3 % 3, i / 9 % 3].map(|x| S::from_f64(x as f64 - 1.0));
     let mut hits = 0;
@@ -88,7 +89,7 @@ fn grid<S: Scalar>(mut next: usize) -> usize {
             let parts = [direction % 4, direction / 4 % 4, direction / 16];
             let direction = parts.map(|x| S::from_f64([-1.0, -0.0, 0.0, 1.0][x]));
             let triangle = |_| {
-                // A generator of the numbers below a prime close to 27^3.
+                // Multiplication by 5 modulo a prime near 27^3: a sequence with a period of 984.
                 next = next * 5 % 19_681;
                 Triangle::new(point(next), point(next / 27), point(next / 729))
             };
@@ -107,7 +108,9 @@ fn grids() {
     assert!(grid::<f64>(2) > 1000);
 }
 
-/// Rays at corners, edges, the inside of ordinary triangles, and along the planes of their boxes.
+/// Checks ordinary triangles with rays at corners, edges and the inside.
+///
+/// One ray in four goes along an axis through a corner.
 fn ordinary<S: Scalar>(change: impl Fn(usize, f64) -> f64) -> usize {
     let scene = triangles::<S>(&soup(24), change);
     aimed(&scene).iter().map(|ray| assert_agrees(&scene, ray)).sum()
@@ -117,12 +120,14 @@ fn ordinary<S: Scalar>(change: impl Fn(usize, f64) -> f64) -> usize {
 fn ordinary_triangles_with_aimed_rays() {
     assert!(ordinary::<f32>(|_, x| x) > 100);
     assert!(ordinary::<f64>(|_, x| x) > 100);
-    // Multiples of 1/64: the directions are exact, and so is what they are aimed at.
+    // With multiples of 1/64 the directions and their targets are exact.
     assert!(ordinary::<f32>(|_, x| (x * 64.0).round() / 64.0) > 100);
     assert!(ordinary::<f64>(|_, x| (x * 64.0).round() / 64.0) > 100);
 }
 
-/// Coordinates of all magnitudes in one scene, rays at corners, edges and the inside.
+/// Checks scenes with coordinates of all magnitudes.
+///
+/// Rays aim at corners, edges and the inside.
 fn magnitudes<S: Scalar>(log_range: std::ops::Range<f64>, rays: usize) -> usize {
     let mut rng = Pcg64Mcg::seed_from_u64(3);
     let mut hits = 0;
@@ -151,7 +156,7 @@ fn mixed_magnitudes() {
     assert!(magnitudes::<f64>(-320.0..308.0, 15) > 2);
 }
 
-/// Any bits at all, one in two rays from a corner or at one.
+/// Checks arbitrary bits; every other ray starts at a corner.
 fn any_bits<S: Scalar>(bits: &[u64], number: impl Fn(u64) -> S) {
     let point = |i: usize| [0, 1, 2].map(|k| number(bits[3 * i + k]));
     let scene = [Triangle::new(point(0), point(1), point(2)), Triangle::new(point(2), point(3), point(4))];

@@ -1,8 +1,8 @@
-//! One soup of corners, seen as every kind of primitive.
+//! One soup of corners, as every kind of primitive.
 
 use bvhkit::{Aabb, Intersect, OneByOne, Primitive, Ray, Scalar, Sphere, Triangle};
 
-/// Three points; what a primitive makes of them is its own affair.
+/// Three points; each kind of primitive uses them in its own way.
 pub type Corners<S> = [[S; 3]; 3];
 
 pub fn triangles<S: Scalar>(soup: &[Corners<S>]) -> Vec<Triangle<S>> {
@@ -17,8 +17,10 @@ pub fn boxes<S: Scalar>(soup: &[Corners<S>]) -> Vec<Aabb<S>> {
     soup.iter().map(|&corners| Aabb::of_points(corners)).collect()
 }
 
-/// A user's primitive that keeps no rule but the pure function: a disc in a plane of constant z, whose
-/// test ignores the interval and is wrong by a tenth or answers NaN, and which is sorted by a corner.
+/// A user's primitive that keeps no rule except that it is a pure function.
+///
+/// It is a disc in a plane of constant z. Its test ignores the interval, and the t it answers may
+/// be wrong by a tenth, negated or NaN.
 pub struct Disc<S> {
     center: [S; 3],
     radius: S,

@@ -1,4 +1,6 @@
-//! Strategies for rays that go where rounding decides: corners, edges, faces of boxes, surfaces.
+//! Strategies for rays at targets where rounding decides.
+//!
+//! Targets are corners, edges, faces of boxes, and surfaces.
 
 use super::numbers::{LogUniform, log_uniform, scalar_from_bits};
 use super::primitives::Corners;
@@ -7,7 +9,7 @@ use bvhkit::{Ray, Scalar};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-/// How to make a ray out of a soup, whose primitives it picks by index.
+/// A recipe for a ray, which picks primitives of a soup by index.
 #[derive(Clone, Debug)]
 pub struct Aim {
     from: From,
@@ -18,11 +20,11 @@ pub struct Aim {
 #[derive(Clone, Debug)]
 enum From {
     Place(Place),
-    /// Any exponents.
+    /// A point with any exponents.
     Numbers([LogUniform; 3]),
 }
 
-/// A point of some primitive: a corner, on an edge, inside; or pushed off it by its own size.
+/// A point of some primitive: a corner, on an edge, inside, or off it by its size.
 #[derive(Clone, Debug)]
 struct Place {
     primitive: Index,
@@ -33,14 +35,15 @@ struct Place {
 enum Toward {
     /// From the origin to a place, which is at t = 1.
     Place(Place),
-    /// Along an axis, forward or back, with zeros of either sign: from a corner, in the planes of
-    /// that corner's box.
+    /// Along an axis, forward or back, with zeros of either sign.
+    ///
+    /// A ray from a corner is in the planes of that corner's box.
     Axis { axis: usize, length: f64, zeros: [bool; 3] },
-    /// Any bits.
+    /// A direction with any bits.
     Bits([u64; 3]),
-    /// Any exponents.
+    /// A direction with any exponents.
     Numbers([LogUniform; 3]),
-    /// Nowhere: an invalid ray.
+    /// A zero direction, which makes the ray invalid.
     Zero,
 }
 
@@ -57,7 +60,7 @@ pub fn aims() -> impl Strategy<Value = Vec<Aim>> {
     let interval = prop_oneof![
         4 => Just(Interval::Whole),
         1 => (0.0..2.0).prop_map(Interval::From),
-        // Backward, forward, empty, a single point.
+        // Backward, forward and empty intervals; then single points.
         2 => (-2.0..2.0, 0.0..3.0).prop_map(|(t_min, t_max)| Interval::Between(t_min, t_max)),
         1 => prop::sample::select(vec![0.0, 1.0]).prop_map(|t| Interval::Between(t, t)),
         1 => (log_uniform(), log_uniform()).prop_map(|(t_min, t_max)| Interval::Numbers(t_min, t_max)),
@@ -84,7 +87,7 @@ fn place() -> impl Strategy<Value = Place> {
     let corner = prop::sample::select(vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
     let edge = (0.0..1.0).prop_map(|w| [w, 1.0 - w, 0.0]);
     let inside = (0.0..1.0, 0.0..1.0).prop_map(|(v, w)| [1.0 - w, w * (1.0 - v), w * v]);
-    // Weights that do not sum to 1 leave the plane, too.
+    // Weights that do not sum to 1 also leave the plane.
     let beside = [-4.0..4.0, -4.0..4.0, -4.0..4.0];
     let weights = prop_oneof![corner, edge, inside, beside];
     (any::<Index>(), weights).prop_map(|(primitive, weights)| Place { primitive, weights })
@@ -94,7 +97,7 @@ impl Place {
     fn point<S: Scalar>(&self, soup: &[Corners<S>]) -> [S; 3] {
         let fallback = [[S::ZERO; 3]; 3];
         let corners = if soup.is_empty() { &fallback } else { self.primitive.get(soup) };
-        // A corner itself must come out exactly, a negative zero and all.
+        // A corner itself must come out exactly, even with a negative zero.
         if let Some(corner) = self.weights.iter().position(|&w| w == 1.0) {
             return corners[corner];
         }

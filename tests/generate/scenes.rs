@@ -1,4 +1,4 @@
-//! Strategies for soups of corners: ordinary ones, and every way in which coordinates are awkward.
+//! Strategies for soups of corners, with ordinary and awkward coordinates.
 
 use super::numbers::{exponent, log_uniform, scalar_from_bits};
 use super::primitives::Corners;
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 type Point = [f64; 3];
 
-/// Up to 60 primitives of one kind of awkwardness.
+/// Fewer than 60 primitives whose coordinates are awkward in one way.
 pub fn soup<S: Scalar>() -> impl Strategy<Value = Vec<Corners<S>>> {
     let plain = || around(point(10.0), 1.0);
     let kinds = prop_oneof![
@@ -16,7 +16,7 @@ pub fn soup<S: Scalar>() -> impl Strategy<Value = Vec<Corners<S>>> {
         several(without_area()),
         several(sliver()),
         several(on_grid(0..5)),
-        // 64 different ones at the most: many are equal.
+        // Only 8 different corners, so that many primitives are equal.
         several(on_grid(0..2)),
         several(plain().prop_map(|corners| scaled(corners, 1e30))),
         several(plain().prop_map(|corners| scaled(corners, 1e-30))),
@@ -27,7 +27,7 @@ pub fn soup<S: Scalar>() -> impl Strategy<Value = Vec<Corners<S>>> {
     prop_oneof![
         10 => rounded,
         1 => prop::collection::vec(from_bits(), 0..60),
-        // Any exponent: of each coordinate, of each primitive, of the whole scene.
+        // Any exponent: one for each coordinate, each primitive, or the whole scene.
         1 => prop::collection::vec([(); 3].map(|()| [(); 3].map(|()| log_uniform())), 0..60)
             .prop_map(|soup| soup.into_iter().map(|c| c.map(|p| p.map(|x| x.number()))).collect()),
         1 => prop::collection::vec((plain(), exponent()), 0..60)
@@ -59,7 +59,7 @@ fn clustered() -> impl Strategy<Value = [Point; 3]> {
     around(near, 0.05)
 }
 
-/// A point, a segment with a doubled end, or three points on a line.
+/// Returns a point, a segment with a doubled end, or three points on a line.
 fn without_area() -> impl Strategy<Value = [Point; 3]> {
     (point(3.0), point(3.0), 0..4).prop_map(|(a, b, kind)| match kind {
         0 => [a; 3],
@@ -69,7 +69,7 @@ fn without_area() -> impl Strategy<Value = [Point; 3]> {
     })
 }
 
-/// A million times as long as wide.
+/// Returns a triangle about a million times as long as wide.
 fn sliver() -> impl Strategy<Value = [Point; 3]> {
     (point(10.0), point(10.0), point(1e-5)).prop_map(|(a, along, aside)| {
         let b = add(a, along, 1.0);
@@ -77,7 +77,9 @@ fn sliver() -> impl Strategy<Value = [Point; 3]> {
     })
 }
 
-/// Corners with small whole coordinates: shared edges, coplanar faces and equal t in plenty.
+/// Returns corners with small whole coordinates.
+///
+/// They give plenty of shared edges, coplanar faces and equal t.
 fn on_grid(range: std::ops::Range<i8>) -> impl Strategy<Value = [Point; 3]> {
     let coordinate = move || range.clone().prop_map(f64::from);
     let point = move || [coordinate(), coordinate(), coordinate()];

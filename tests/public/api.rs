@@ -1,4 +1,4 @@
-//! The public face as a user meets it: what compiles, what is lazy, what the counters mean.
+//! Tests of the public API: accepted inputs, lazy queries, the meaning of counters.
 
 use crate::common::alone::Alone;
 use bvhkit::heuristic::{BinnedSah, Heuristic, Median, SweepSah};
@@ -8,7 +8,7 @@ use bvhkit::{
 };
 use glam::{DVec3, Vec3};
 
-/// Spheres of radius 0.4 at x = 0, 1, 2, ...
+/// Returns spheres of radius 0.4 at x = 0, 1, 2, ...
 fn row(n: usize) -> Vec<Sphere> {
     (0..n).map(|i| Sphere::new([i as f32, 0.0, 0.0], 0.4)).collect()
 }
@@ -97,7 +97,7 @@ fn trees_and_what_comes_of_them_cross_threads() {
     assert!(answers.iter().all(|&answer| answer == bvh.closest_hit(&along_the_row())));
 }
 
-/// Owned, and nothing else: not `Clone`, not `Debug`, with no size known at compile time inside.
+/// A primitive that owns heap data and implements neither `Clone` nor `Debug`.
 struct Named {
     name: String,
     place: [f32; 3],
@@ -168,10 +168,10 @@ fn hits_are_found_as_they_are_asked_for() {
 fn counters_count_rays_nodes_leaves_and_primitives() {
     let bvh = Bvh::builder().layout::<Tree>().heuristic(Median).max_leaf_size(2).build(row(4)).unwrap();
     let mut counters = Counters::default();
-    // Into the first of two leaves; the second begins behind the hit.
+    // The ray enters the first of two leaves; the second begins behind the hit.
     bvh.closest_hit_with(&along_the_row(), &mut counters);
     assert_eq!(counters, Counters { rays: 1, nodes: 1, leaves: 1, primitives: 2 });
-    // Past everything: the box around all of it is tested, but no node is visited.
+    // The ray misses everything: the box of the whole tree is tested, but no node is visited.
     bvh.closest_hit_with(&Ray::new([-5.0, 9.0, 0.0], [1.0, 0.0, 0.0]), &mut counters);
     assert_eq!(counters, Counters { rays: 2, nodes: 1, leaves: 1, primitives: 2 });
     // Any hit stops within the leaf.
@@ -188,7 +188,7 @@ fn steps_of_many_rays_are_the_sum_of_each_rays() {
     let nowhere = Ray::new([0.0; 3], [0.0; 3]);
     let rays = [along_the_row(), nowhere, Ray::new([-5.0, 9.0, 0.0], [1.0, 0.0, 0.0])];
     let [closest, any] = [bvh.closest_hit_steps(&rays), bvh.any_hit_steps(&rays)];
-    // An invalid ray counts nowhere.
+    // The invalid ray is not counted.
     assert_eq!(closest, Counters { rays: 2, nodes: 1, leaves: 1, primitives: 2 });
     assert_eq!(any, Counters { rays: 2, nodes: 1, leaves: 1, primitives: 1 });
     let means = |steps: Counters| [steps.nodes_per_ray(), steps.leaves_per_ray(), steps.primitives_per_ray()];
@@ -199,7 +199,8 @@ fn steps_of_many_rays_are_the_sum_of_each_rays() {
 #[test]
 fn what_lies_outside_the_interval_is_not_visited() {
     let bvh = Bvh::builder().layout::<Tree>().max_leaf_size(1).build(row(1000)).unwrap();
-    // From the gap between two spheres into that gap: half of the row behind, half of it beyond.
+    // The ray starts and ends in a gap between two spheres: half of the row is
+    // behind it, half is beyond its end.
     let ray = Ray::new([500.5, 0.0, 0.0], [1.0, 0.0, 0.0]).with_interval(0.0, 0.05);
     let mut counters = Counters::default();
     assert!(bvh.closest_hit_with(&ray, &mut counters).is_none());

@@ -1,9 +1,9 @@
-//! The compact layout: few bytes, and boxes of any size.
+//! Tests of the compact layout: its memory, and boxes of any size.
 
 use crate::common::naive::Naive;
 use bvhkit::{Aabb, Bvh, CompactTree, Ray, Scalar, Triangle};
 
-/// A height field of twice `size * size` triangles.
+/// Returns a height field of `2 * size * size` triangles.
 fn terrain(size: usize) -> Vec<Triangle> {
     let point = |i: usize, k: usize| {
         let (x, z) = (i as f32, k as f32);
@@ -26,7 +26,9 @@ fn a_triangle_takes_at_most_45_bytes_all_in() {
     assert!(owned <= 45.0 && borrowed <= 17.0, "{owned} {borrowed}");
 }
 
-/// Up to where extents overflow, and down to where they vanish.
+/// Returns boxes with corners from `-scale` to `scale`.
+///
+/// At the largest scales some extents overflow; the smallest extents are zero.
 fn boxes<S: Scalar>(scale: S) -> Vec<Aabb<S>> {
     let corners = [-1.0, -0.999, -0.5, -0.0, 0.0, 1e-6, 0.25, 1.0];
     let corners = corners.map(|x| scale * S::from_f64(x));
@@ -34,7 +36,9 @@ fn boxes<S: Scalar>(scale: S) -> Vec<Aabb<S>> {
     pairs.clone().zip(pairs.skip(3)).map(|([a, b], [c, d])| Aabb::of_points([[a, c, b], [d, b, a]])).collect()
 }
 
-/// Compares, and tells how many hits there were: none where distances overflow.
+/// Compares trees over boxes with the naive loop and returns the number of hits.
+///
+/// There are no hits where distances overflow.
 fn compare<S: Scalar>(scale: S) -> usize {
     let boxes = boxes(scale);
     let (small, half) = (S::from_f64(1e-3), S::HALF);

@@ -1,9 +1,11 @@
-//! The same tree on any number of threads, and twice on the same.
+//! Tests of determinism: the same tree in every run, on any number of threads.
 
 use crate::common::{heuristics, scattered};
 use bvhkit::{Bvh, Quality, Scalar, Tree, Triangle};
 
-/// A third with whole coordinates, a third copies: ties wherever a build could break them by chance.
+/// Returns triangles, a third with whole coordinates and a third copies.
+///
+/// So there are ties wherever chance could decide a build.
 fn with_ties<S: Scalar>(n: usize) -> Vec<Triangle<S>> {
     let mut triangles = scattered::triangles::<S>(n);
     let whole = |point: [S; 3]| point.map(|x| S::from_f64(x.to_f64().round()));
@@ -18,7 +20,9 @@ fn with_ties<S: Scalar>(n: usize) -> Vec<Triangle<S>> {
     triangles
 }
 
-/// With every heuristic, the trees on 1, 2 and 4 threads and on the caller's own pool are equal.
+/// Asserts that trees built on 1, 2 and 4 threads and the caller's pool are equal.
+///
+/// Every heuristic builds such trees.
 fn assert_deterministic<S: Scalar>(n: usize) {
     let triangles = with_ties::<S>(n);
     for (name, heuristic) in heuristics::all() {

@@ -1,4 +1,4 @@
-//! The extremes of rays: origins, directions and intervals, in every mode of testing a triangle.
+//! Extreme rays: origins, directions and intervals, in every triangle mode.
 
 use crate::common::agreement::assert_agreement;
 use crate::common::aimed::{aimed, soup, triangles};
@@ -31,7 +31,7 @@ fn plus_zero_and_minus_zero_are_the_same_direction<M: Mode>() {
             direction.rotate_right(i % 3);
             Ray::new(triangle.a, point::<M::Number>(direction))
         });
-        // t and index: the weights of corners may differ in the sign of a zero.
+        // Compared with `==`, not by bits: barycentrics may differ in the sign of a zero.
         let answers = rays.map(|ray| bvh.hits(&ray).collect::<Vec<_>>());
         hits += answers[0].len();
         assert!(answers.iter().all(|answer| *answer == answers[0]), "{answers:?}");
@@ -81,12 +81,12 @@ fn the_interval_is_closed_at_a_surface<M: Mode>() {
     }
 }
 
-/// Of each triangle's hit, found again with an interval that is nothing but its t.
+/// Traces a ray again with the interval [t, t] of each hit and finds it there.
 fn a_hit_is_found_again_at_its_own_t<M: Mode>() {
     let scene: Vec<_> =
         triangles::<M::Number>(&soup(60), |_, x| (x * 4.0).round()).into_iter().map(M::of).collect();
     let bvh = Bvh::build(&scene).unwrap();
-    // Whole numbers, and a power of two for a direction: nothing is rounded but the division.
+    // Vertices are whole numbers and the direction is a power of two, so only the division rounds.
     let ray = ray([0.25, 0.125, -8.0], [0.0, 0.0, 0.5]);
     let hits: Vec<_> = bvh.hits(&ray).collect();
     assert!(hits.len() > 3);
@@ -104,7 +104,9 @@ fn an_axis_aligned_triangle_behind_the_origin_is_hit_at_a_negative_t<M: Mode>() 
     assert!(t.is_some_and(|t| (t + 5.0).abs() < 1e-5), "{t:?}");
 }
 
-/// Where boxes are met such a component is zero: so it is for the hit.
+/// Box tests treat a subnormal component as zero, since its inverse is infinite.
+///
+/// The hits have to be the same as with a component of zero.
 fn subnormal_components_beside_ordinary_ones<M: Mode>() {
     let least = M::Number::ZERO.next_up();
     let triangles = triangles::<M::Number>(&soup(60), |_, x| x * 4.0);
@@ -113,7 +115,7 @@ fn subnormal_components_beside_ordinary_ones<M: Mode>() {
     let subnormal = |x: M::Number| if x == M::Number::ZERO { least.xor_sign(x) } else { x };
     let rays: Vec<_> =
         zeros.iter().map(|ray| Ray { direction: ray.direction.map(subnormal), ..*ray }).collect();
-    // Through corners, where the least step aside may decide.
+    // These rays aim at corners, where the smallest change of direction may decide.
     assert!(assert_agreement(&scene, &rays) > 20);
     for (i, (triangle, &zero)) in triangles.iter().zip(&zeros).enumerate() {
         let (Triangle { a, b, c }, half) = (*triangle, M::Number::HALF);
@@ -132,12 +134,12 @@ fn a_subnormal_direction_is_valid<M: Mode>() {
     for direction in [[tiny; 3], [M::Number::ZERO, M::Number::ZERO, tiny]] {
         let ray = Ray::new([M::Number::ZERO; 3], direction);
         assert_eq!(ray.validate(), Ok(()));
-        // At a t beyond the largest number.
+        // The wall is at a t beyond the largest number, which is a miss.
         assert_eq!(assert_agreement(&[wall], &[ray]), 0);
     }
 }
 
-/// Asks everything there is to ask of a ray that hits nothing, and that nothing is visited for it.
+/// Asserts that an invalid ray gives `error`, hits nothing and visits no node.
 fn assert_unanswered<M: Mode>(ray: &Ray<M::Number>, error: RayError) {
     let scene: Vec<_> = triangles::<M::Number>(&soup(9), |_, x| x).into_iter().map(M::of).collect();
     let bvh = Bvh::builder().max_leaf_size(1).build(&scene).unwrap();
@@ -185,7 +187,7 @@ in_every_mode! {
 
 #[test]
 fn a_ray_in_the_plane_of_a_face_meets_the_boxes_on_both_sides() {
-    // Four by four by four unit boxes that touch.
+    // A grid of 4 x 4 x 4 unit boxes that touch.
     let corner = |i: u8| [i % 4, i / 4 % 4, i / 16].map(f32::from);
     let boxes: Vec<_> = (0..64).map(|i| Aabb::new(corner(i), corner(i).map(|x| x + 1.0))).collect();
     let bvh = Bvh::build(&boxes).unwrap();
@@ -207,7 +209,8 @@ fn an_origin_inside_a_solid_hits_its_far_side() {
     assert_eq!(Bvh::build([Sphere::new([0.0f32; 3], 1.0)]).unwrap().closest_hit(&inside).unwrap().t, 0.5);
     let unit = Bvh::build([Aabb::new([-1.0f32; 3], [1.0; 3])]).unwrap();
     assert_eq!(unit.closest_hit(&inside).unwrap().t, 0.5);
-    // On the surface, closed at t_min: in at 0, out at 2.
+    // The origin is on the surface and the interval is closed at t_min: the
+    // ray enters at 0 and leaves at 2.
     let on = ray([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
     assert_eq!(unit.closest_hit(&on).unwrap().t, 0.0);
     assert_eq!(unit.closest_hit(&on.with_interval(0.0f32.next_up(), 9.0)).unwrap().t, 2.0);

@@ -1,22 +1,32 @@
-//! The extremes of coordinates: documented answers, equal to the naive loop's, in every mode of testing a triangle.
+//! Extreme coordinates: documented answers, equal to those of the naive loop.
 //!
-//! Each kind of extreme input, and the tests that hold it to what is required:
+//! They are tested in every triangle mode. The tests of each kind of extreme input:
 //!
-//! | input | tests |
-//! |---|---|
-//! | coordinates from subnormal to the largest | here: `coordinates_from_the_smallest_to_the_largest_number`, `an_overflow_is_no_hit_at_infinity`; `../exact/closed_meshes.rs`: `*_at_all_sizes`; any exponent and any bits: `properties.rs`, `random_bits.rs` |
-//! | direction components +-0, subnormal, all zero | `extreme_rays.rs`: `plus_zero_and_minus_zero_are_the_same_direction`, `*subnormal*`, `invalid_rays_hit_and_visit_nothing`; `../exact/grid.rs` |
-//! | a ray in the plane of a box's face | `extreme_rays.rs`: `a_ray_in_the_plane_of_a_face_*`, `a_coplanar_triangle_misses_*`; `../exact/grid.rs` |
-//! | origin on or inside a surface | `extreme_rays.rs`: `the_interval_is_closed_at_a_surface`, `an_origin_inside_*`; `../exact/grid.rs` |
-//! | t_min > t_max; NaN or infinity in a ray | `extreme_rays.rs`: `invalid_rays_hit_and_visit_nothing` |
-//! | NaN or infinity in a primitive | `invalid_primitives.rs` |
-//! | no area; slivers | `invalid_primitives.rs`: `a_triangle_without_area_*`; `../exact/grid.rs`; here: `slivers_a_million_times_as_long_as_wide` |
-//! | a million equal primitives or centroids | `hostile.rs`: `a_million_*`, `of_equal_primitives_the_first_is_hit` |
-//! | 0 or 1 primitive | here: `none_or_one_triangle`, `none_or_one_primitive` |
-//! | hostile heuristics | `hostile.rs`: `hostile_heuristics_*`, `a_bad_split_*`; and in every test of agreement |
-//! | a teapot in a stadium, far from the origin, all sizes | here: tests of these names; without a leak: `../exact/closed_meshes.rs` |
-//! | more primitives than indices | `hostile.rs`: `more_primitives_than_indices*` |
-//! | `max_leaf_size` 0 or huge | `hostile.rs`: `a_leaf_size_of_zero_*` |
+//! - Coordinates from subnormal to the largest:
+//!   `coordinates_from_the_smallest_to_the_largest_number` and `an_overflow_is_no_hit_at_infinity`
+//!   in this file; `*_at_all_sizes` in `../exact/closed_meshes.rs`. Any exponent and any bits:
+//!   `properties.rs` and `random_bits.rs`.
+//! - Direction components that are +-0 or subnormal, and directions that are all zero:
+//!   `plus_zero_and_minus_zero_are_the_same_direction`, `*subnormal*` and
+//!   `invalid_rays_hit_and_visit_nothing` in `extreme_rays.rs`; `../exact/grid.rs`.
+//! - A ray in the plane of a box's face: `a_ray_in_the_plane_of_a_face_*` and
+//!   `a_coplanar_triangle_misses_*` in `extreme_rays.rs`; `../exact/grid.rs`.
+//! - An origin on or inside a surface: `the_interval_is_closed_at_a_surface` and
+//!   `an_origin_inside_*` in `extreme_rays.rs`; `../exact/grid.rs`.
+//! - t_min > t_max, and NaN or infinity in a ray:
+//!   `invalid_rays_hit_and_visit_nothing` in `extreme_rays.rs`.
+//! - NaN or infinity in a primitive: `invalid_primitives.rs`.
+//! - Triangles without area: `a_triangle_without_area_*` in `invalid_primitives.rs`;
+//!   `../exact/grid.rs`. Slivers: `slivers_a_million_times_as_long_as_wide` in this file.
+//! - A million equal primitives or centroids: `a_million_*` and
+//!   `of_equal_primitives_the_first_is_hit` in `hostile.rs`.
+//! - 0 or 1 primitive: `none_or_one_triangle` and `none_or_one_primitive` in this file.
+//! - Hostile heuristics: `hostile_heuristics_*` and `a_bad_split_*` in `hostile.rs`;
+//!   also every test of agreement.
+//! - A teapot in a stadium, meshes far from the origin, all sizes: the tests of these names in this
+//!   file. Without a leak: `../exact/closed_meshes.rs`.
+//! - More primitives than indices: `more_primitives_than_indices*` in `hostile.rs`.
+//! - `max_leaf_size` of 0 or huge: `a_leaf_size_of_zero_*` in `hostile.rs`.
 
 use crate::common::agreement::assert_agreement;
 use crate::common::aimed::{aimed, soup, triangles};
@@ -25,20 +35,21 @@ use crate::common::modes::Mode;
 use crate::common::range::Range;
 use bvhkit::{Aabb, Bvh, Ray, Scalar, Sphere, Triangle};
 
-/// The triangles in a mode agree with the naive loop; returns the number of hits.
+/// Compares triangles in mode `M` with the naive loop; returns the number of hits.
 fn agreement<M: Mode>(triangles: &[Triangle<M::Number>]) -> usize {
     let in_mode: Vec<_> = triangles.iter().copied().map(M::of).collect();
     assert_agreement(&in_mode, &aimed(triangles))
 }
 
-/// The same for the soup with its coordinates changed.
+/// Calls [`agreement`] for a soup with changed coordinates.
 fn agree<M: Mode>(change: impl Fn(usize, f64) -> f64) -> usize {
     agreement::<M>(&triangles(&soup(60), change))
 }
 
 fn coordinates_from_the_smallest_to_the_largest_number<M: Range>() {
     let (smallest, largest, step) = if size_of::<M::Number>() == 4 { (-45, 38, 3) } else { (-324, 307, 40) };
-    // And where products overflow in f64, though coordinates are well inside of the range.
+    // Exponents at which products overflow in f64, although the
+    // coordinates are far inside the range.
     let products_overflow = if size_of::<M::Number>() == 4 { 0..0 } else { 152..184 };
     for exponent in (smallest..=largest).step_by(step).chain(products_overflow.step_by(4)) {
         let scale = 10f64.powi(exponent);
@@ -59,7 +70,7 @@ fn a_mesh_far_from_the_origin<M: Mode>() {
 }
 
 fn a_teapot_in_a_stadium<M: Mode>() {
-    // The last ten are the stadium.
+    // The last ten triangles are the stadium.
     for size in [1e4, 1e6] {
         assert!(agree::<M>(|i, x| if i < 50 { x } else { x * size }) > 100);
     }
@@ -72,7 +83,7 @@ fn slivers_a_million_times_as_long_as_wide<M: Mode>() {
 }
 
 fn an_overflow_is_no_hit_at_infinity<M: Mode>() {
-    // The products of its sides are about the smallest number, and their reciprocal infinite.
+    // The product of the sides is near the smallest number, and its reciprocal is infinite.
     let side = M::Number::from_f64(if size_of::<M::Number>() == 4 { 1e-20 } else { 1e-160 });
     let (zero, one, inside) = (M::Number::ZERO, M::Number::ONE, side * M::Number::from_f64(0.2));
     let speck = [M::of(Triangle::new([zero; 3], [side, zero, zero], [zero, side, zero]))];
@@ -80,7 +91,7 @@ fn an_overflow_is_no_hit_at_infinity<M: Mode>() {
     let hit = Bvh::build(&speck).unwrap().closest_hit(&ray);
     assert!(hit.is_none_or(|hit| hit.t.is_finite()), "{hit:?}");
     assert_agreement(&speck, &[ray]);
-    // The same far away: t itself is beyond the largest number.
+    // A huge triangle far away: t itself is beyond the largest number.
     let is_single = size_of::<M::Number>() == 4;
     let [huge, tiny] = if is_single { [1e30, 1e-30] } else { [1e250, 1e-250] }.map(M::Number::from_f64);
     let wall = [M::of(Triangle::new([-huge, -huge, huge], [huge, -huge, huge], [zero, huge, huge]))];

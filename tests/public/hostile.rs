@@ -1,4 +1,6 @@
-//! Builds that a careless driver would not survive: hostile heuristics, equal primitives, too many.
+//! Builds that would break a careless driver.
+//!
+//! The inputs are hostile heuristics, equal primitives, and more primitives than indices.
 
 use crate::common::heuristics;
 use crate::common::in_every_mode::in_every_mode;
@@ -10,12 +12,14 @@ use bvhkit::{
 };
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Concentric or, if all are equally large, identical.
+/// Returns `n` concentric spheres; they are identical if all radii are equal.
 fn concentric(n: usize, radius: impl Fn(usize) -> f32) -> Vec<Sphere> {
     (0..n).map(|i| Sphere::new([1.0, 2.0, 3.0], radius(i))).collect()
 }
 
-/// Counts the references that a heuristic is shown: the work of the build, whatever the machine.
+/// A heuristic that counts the references it is shown.
+///
+/// The count measures the work of a build on any machine.
 struct Counted<'a, H> {
     heuristic: H,
     references: &'a AtomicU64,
@@ -28,7 +32,7 @@ impl<H: Heuristic<f32>> Heuristic<f32> for Counted<'_, H> {
     }
 }
 
-/// Counts how often its box is asked for.
+/// A sphere that counts the calls of its `aabb`.
 struct Asked<'a>(Sphere, &'a AtomicU64);
 
 impl Primitive for Asked<'_> {
@@ -47,7 +51,9 @@ impl Intersect for Asked<'_> {
     }
 }
 
-/// Builds over `n` spheres with one centroid, asks for the closest hit, and returns the work.
+/// Builds over `n` spheres with one centroid and returns the work.
+///
+/// Also checks the tree and its closest hit.
 fn work(n: usize, heuristic: impl Heuristic<f32>, radius: impl Fn(usize) -> f32) -> u64 {
     let spheres = concentric(n, &radius);
     let (references, boxes) = (AtomicU64::new(0), AtomicU64::new(0));
@@ -57,7 +63,7 @@ fn work(n: usize, heuristic: impl Heuristic<f32>, radius: impl Fn(usize) -> f32)
     assert!(boxes.load(Ordering::Relaxed) <= 2 * n as u64, "a box is asked for once or twice");
     bvh.check().unwrap();
     assert!(bvh.report().max_depth <= MAX_DEPTH);
-    // From the outside the largest is hit first; of equals, the first.
+    // From outside, a ray first hits the largest sphere; of equal ones, the first.
     let first = (1..n).fold(0, |first, i| if radius(i) > radius(first) { i } else { first });
     let ray = Ray::new([1.0, 2.0, -20.0], [0.0, 0.0, 1.0]);
     let hit = bvh.closest_hit(&ray);
@@ -67,7 +73,9 @@ fn work(n: usize, heuristic: impl Heuristic<f32>, radius: impl Fn(usize) -> f32)
     references.into_inner()
 }
 
-/// Four times as many primitives take little more than four times the work: of n log n, 4.5 times.
+/// Asserts that four times as many primitives take at most 4.8 times the work.
+///
+/// For n log n the factor is 4.5.
 fn assert_n_log_n(n: usize, heuristic: impl Heuristic<f32> + Copy) {
     let radii: [fn(usize) -> f32; 2] = [|_| 1.0, |i| 1.0 + (i % 1000) as f32 * 0.001];
     for radius in radii {
@@ -88,7 +96,7 @@ fn of_equal_primitives_the_first_is_hit<M: Mode>() {
     let point = |x: [f64; 3]| x.map(M::Number::from_f64);
     let (a, b, c) = (point([0.0, 0.0, 3.0]), point([1.0, 0.0, 3.0]), point([0.0, 1.0, 3.5]));
     let triangles = [M::of(Triangle::new(a, b, c)); 1000];
-    // Inside, at an edge and at a corner.
+    // Targets inside, on an edge and at a corner.
     for target in [[0.25, 0.25, 0.0], [0.5, 0.0, 0.0], [0.0, 0.0, 0.0]] {
         let ray = Ray::new(point(target), point([0.0, 0.0, 1.0]));
         for (name, heuristic) in heuristics::all() {
@@ -101,7 +109,7 @@ fn of_equal_primitives_the_first_is_hit<M: Mode>() {
 
 in_every_mode!(of_equal_primitives_the_first_is_hit);
 
-/// Proposes the same at every node, as a function of the number of primitives.
+/// A heuristic that derives its split only from the number of references.
 #[derive(Clone, Copy)]
 struct Stubborn(fn(usize) -> Split);
 
@@ -125,13 +133,15 @@ const STUBBORN: [(&str, Stubborn); 9] = [
     ("always a leaf", Stubborn(|_| Split::Leaf)),
 ];
 
-/// Runs `f`, and all that it leaves to other threads, where a recursion as deep as a bad tree would overflow.
+/// Runs `f` on a thread with a small stack, and all tasks that `f` starts too.
+///
+/// A recursion as deep as a bad tree would overflow this stack.
 fn on_a_small_stack(f: impl FnOnce() + Send) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).stack_size(64 * 1024).build().unwrap();
     pool.install(f);
 }
 
-/// `n` spheres in a row, each met by the same ray.
+/// Returns `n` spheres in a row and a ray that hits them all.
 fn row<S: Scalar>(n: usize) -> (Vec<Sphere<S>>, Ray<S>) {
     let x = |i: usize| S::from_f64((i * 7 % n) as f64);
     let spheres = (0..n).map(|i| Sphere::new([x(i), S::ZERO, S::ZERO], S::HALF)).collect();
@@ -192,7 +202,7 @@ fn a_leaf_size_of_zero_is_an_error_and_a_huge_one_a_single_leaf() {
     }
 }
 
-/// A primitive of no size, so that four billion of them fit.
+/// A primitive of size zero, so that four billion of them fit in memory.
 #[derive(Clone, Copy, Debug)]
 struct Nothing;
 
@@ -218,14 +228,14 @@ fn more_primitives_than_indices() {
     for count in [count, count + 1, usize::MAX] {
         let error = Bvh::build(std::iter::repeat_n(Nothing, count)).unwrap_err();
         assert_eq!(error, BuildError::TooManyPrimitives { count });
-        // These would take more memory than there is, were any allocated.
+        // If any memory were allocated for these spheres, there would not be enough.
         let big = std::iter::repeat_n(Sphere::new([0.0f32; 3], 1.0), count);
         let error = Bvh::builder().quality(Quality::High).build(big).unwrap_err();
         assert_eq!(error, BuildError::TooManyPrimitives { count });
     }
 }
 
-/// Tells how many it has, and has none to give.
+/// An iterator that tells its length and panics in `next`.
 struct Untouchable(usize);
 
 impl Iterator for Untouchable {
@@ -264,7 +274,8 @@ fn an_intersection_that_answers_nonsense_is_no_hit() {
         }
     }
     let ray = Ray::new([0.0f32, 0.0, -3.0], [0.0, 0.0, 1.0]).with_interval(2.5, 9.0);
-    // Before the box, which is entered at 2: raised, not lost.
+    // t = 1 is before the box, which the ray enters at t = 2: t is
+    // raised to 2, and the hit is kept.
     let early = Bvh::build([Liar(1.0)]).unwrap().closest_hit(&ray.with_interval(0.0, 9.0));
     assert!(early.is_some_and(|hit| (hit.t - 2.0).abs() < 1e-5));
     for (t, hit) in [(f32::NAN, false), (9.5, false), (f32::INFINITY, false), (2.0, false), (8.0, true)] {

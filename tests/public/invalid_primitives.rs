@@ -1,4 +1,4 @@
-//! Primitives that are no place in space, and primitives that are no surface.
+//! Primitives with invalid boxes, and triangles without area.
 
 use crate::common::agreement::assert_agreement;
 use crate::common::aimed::{aimed, soup, triangles};
@@ -11,8 +11,10 @@ use bvhkit::{
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// With the primitive at `index` made invalid, a build fails and names it; a build that skips answers
-/// as if it were not there, indices apart.
+/// Inserts `bad` at several indices and checks how builds treat it.
+///
+/// A default build fails and names the index. A build that skips invalid primitives answers as if
+/// `bad` were absent, apart from the shifted indices.
 fn assert_rejected_or_skipped<P: Intersect<Payload: Payload> + Clone>(
     good: &[P],
     bad: &P,
@@ -67,7 +69,7 @@ fn spheres_and_boxes() {
     let rays = aimed(&triangles::<f32>(&soup(20), |_, x| x));
     let spheres: Vec<_> = soup(20).iter().map(|[a, ..]| Sphere::new(a.map(|x| x as f32), 0.25)).collect();
     let boxes: Vec<_> = spheres.iter().map(Primitive::aabb).collect();
-    // A minimum above its maximum is named first, infinite or not.
+    // A minimum above its maximum is reported first, infinite or not.
     let (nan, infinite, inverted) = (InvalidBox::NanBox, InvalidBox::InfiniteBox, InvalidBox::InvertedBox);
     for (bad, flaw, as_min, as_max, as_radius) in [
         (f32::NAN, nan, nan, nan, nan),

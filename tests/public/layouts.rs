@@ -1,5 +1,7 @@
-//! Every layout, on every instruction set, answers as the naive loop does, bit for bit: for soups, rays, heuristics and
-//! leaf sizes of every kind that is hard, in every mode, for primitives of one's own and for pointers to unlike ones.
+//! Every layout, on every instruction set, answers as the naive loop, bit for bit.
+//!
+//! Soups, rays, heuristics and leaf sizes are of every kind that is hard. Primitives are triangles
+//! in every mode, solids, a user's own primitive, and pointers to primitives of different types.
 
 use crate::common::alone::Alone;
 use crate::common::answers::{Key, Payload, key};
@@ -19,26 +21,29 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::fmt;
 
-/// As many as a leaf of the wide layouts has room for, one more, and far more.
+/// Maximum leaf sizes: up to the 8 slots of a packed leaf, one more, and far more.
 const LEAF_SIZES: [usize; 6] = [1, 4, 8, 9, 100, usize::MAX];
 
-/// By which coordinates are multiplied.
+/// Factors by which coordinates are multiplied.
 const SCALES: [f64; 5] = [1.0, 1e-30, 1e-15, 1e15, 1e30];
 
-/// Triangles at the most, by turns.
+/// Maximum numbers of triangles; scenes take them in turn.
 const SIZES: [usize; 4] = [8, 24, 100, 400];
 
-/// Scenes of each kind: each scale with each leaf size.
+/// The number of scenes of each kind: one for each pair of scale and leaf size.
 const SCENES: usize = SCALES.len() * LEAF_SIZES.len();
 
-/// Builds with some options, compares, and tells how many layouts were.
+/// A function that builds in some layouts, compares, and returns their number.
 type Compare<P> = for<'a> fn(
     &Naive<'a, P>,
     Builder<&'a P, &dyn Heuristic<<P as Primitive>::Scalar>>,
     fmt::Arguments<'_>,
 ) -> usize;
 
-/// The layouts that nobody needs two primitives for to find what is wrong with them.
+/// Compares all three layouts and returns their number.
+///
+/// A few kinds of primitives are enough to find the faults of a layout; the
+/// others use [`in_wide_trees`].
 fn in_every_layout<'a, P: Intersect<Payload: Payload>>(
     naive: &Naive<'a, P>,
     builder: Builder<&'a P, &dyn Heuristic<P::Scalar>>,
@@ -50,7 +55,7 @@ fn in_every_layout<'a, P: Intersect<Payload: Payload>>(
     3
 }
 
-/// The layout that is taken by default.
+/// Compares the wide layout, which is the default, and returns 1.
 fn in_wide_trees<'a, P: Intersect<Payload: Payload>>(
     naive: &Naive<'a, P>,
     builder: Builder<&'a P, &dyn Heuristic<P::Scalar>>,
@@ -60,7 +65,7 @@ fn in_wide_trees<'a, P: Intersect<Payload: Payload>>(
     1
 }
 
-/// What was compared, so that a test can tell that it has tested something.
+/// A comparison function, and counts that show that something was tested.
 struct Compared<P: Intersect> {
     compare: Compare<P>,
     answers: usize,
@@ -72,7 +77,9 @@ impl<P: Intersect<Payload: Payload>> Compared<P> {
         Self { compare, answers: 0, hits: 0 }
     }
 
-    /// Layouts on every instruction set, over trees of half of the heuristics, with leaf sizes by turns.
+    /// Compares one scene on every instruction set.
+    ///
+    /// Half of the heuristics build trees. `turn` chooses that half and the leaf sizes.
     fn add(&mut self, primitives: &[P], rays: &[Ray<P::Scalar>], turn: usize) {
         let naive = Naive::new(primitives, rays);
         self.hits += naive.hits();
@@ -82,7 +89,7 @@ impl<P: Intersect<Payload: Payload>> Compared<P> {
                 let builder = Bvh::builder().heuristic(&**heuristic as &dyn Heuristic<P::Scalar>);
                 let builder = builder.max_leaf_size(max_leaf_size).instruction_set(set);
                 let options = format_args!("{name}, leaves of {max_leaf_size}");
-                // Each closest hit, any hit, all hits.
+                // The closest hit, any hit and all hits of each ray.
                 self.answers += 3 * rays.len() * (self.compare)(&naive, builder, options);
             }
         }
@@ -95,7 +102,10 @@ impl<P: Intersect<Payload: Payload>> Compared<P> {
     }
 }
 
-/// A ray, on the same line from before its origin on, and with zeros: of the other sign, and one more.
+/// Returns `ray` and four variants of it.
+///
+/// They are the whole line, an interval from t = -0.5 on, the direction with the other sign for its
+/// zeros, and the direction with a zero in a random component.
 fn variants<S: Scalar>(ray: Ray<S>, rng: &mut Pcg64Mcg) -> [Ray<S>; 5] {
     let flipped = ray.direction.map(|x| if x == S::ZERO { -x } else { x });
     let mut flat = ray.direction;
@@ -109,7 +119,7 @@ fn variants<S: Scalar>(ray: Ray<S>, rng: &mut Pcg64Mcg) -> [Ray<S>; 5] {
     ]
 }
 
-/// Over soups of all kinds and scales, as primitives of some kind, with rays of theirs.
+/// Compares primitives made from soups of all kinds and scales.
 fn over_the_soups<S: Scalar, P: Intersect<Scalar = S, Payload: Payload>>(
     primitives_of: impl Fn(&[Corners<S>]) -> Vec<P>,
     ray: impl Fn(&[Triangle<S>], &[P], &mut Pcg64Mcg) -> Ray<S>,
@@ -145,12 +155,12 @@ fn all_answers<M: Mode>(compare: Compare<M>) {
     );
 }
 
-/// With ties in every box and every leaf.
+/// Compares equal triangles, which give ties in every box and every leaf.
 fn equal_triangles<M: Mode>(compare: Compare<M>) {
     let point = |x: [f64; 3]| x.map(M::Number::from_f64);
     let (a, b, c) = (point([0.0, 0.0, 3.0]), point([1.0, 0.0, 3.0]), point([0.0, 1.0, 3.5]));
     let triangles = [M::of(Triangle::new(a, b, c)); 3000];
-    // Inside, at a corner, beside.
+    // Targets inside, at a corner and outside.
     let targets = [[0.25, 0.25, 0.0], [0.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
     let rays = targets.map(|target| Ray::new(point(target), point([0.0, -0.0, 1.0])));
     let rays = at_hits(&triangles, rays.into());
@@ -159,7 +169,7 @@ fn equal_triangles<M: Mode>(compare: Compare<M>) {
     compared.tell();
 }
 
-/// Many times what is answered at a time, invalid rays among them.
+/// Compares lists of rays, some of them invalid, with the naive loop.
 fn lists_of_rays<M: Mode>() {
     fn assert_same<'a, M: Mode, L: Traverse<&'a M>>(
         builder: Builder<&'a M, Quality, L>,
@@ -196,7 +206,7 @@ fn lists_of_rays<M: Mode>() {
     }
 }
 
-/// Much longer than what is answered at a time.
+/// A list of 60,000 rays gives the hits of single queries.
 #[test]
 fn a_long_list_of_rays() {
     let mut rng = Pcg64Mcg::seed_from_u64(11);
@@ -239,8 +249,10 @@ fn solids() {
     over_the_soups(boxes::<f64>, |soup, _, rng| soups::ray(soup, rng), in_wide_trees);
 }
 
-/// Rays that start on the faces, edges and corners of boxes, or of solids whose boxes have them, and go any way: where one leaves
-/// a box as it starts, t is a zero of either sign.
+/// Compares boxes with rays that start at their corners, in 26 directions.
+///
+/// A corner of one box may be on a face or an edge of the whole block. Where a ray leaves a box at
+/// its start, t is a zero of either sign.
 #[test]
 fn rays_from_the_faces_of_boxes() {
     let corner = |i: u8| [i % 4, i / 4 % 4, i / 16].map(f32::from);
@@ -257,13 +269,13 @@ fn rays_from_the_faces_of_boxes() {
     compared.tell();
 }
 
-/// A primitive of one's own that keeps no rule but the pure function.
+/// A user's primitive that keeps no rule except that it is a pure function.
 #[test]
 fn sloppy_discs() {
     over_the_soups(discs::<f32>, |soup, _, rng| soups::ray(soup, rng), in_every_layout);
 }
 
-/// A sphere whose leaf says of all lanes that they may be hit, of those without a primitive too.
+/// A sphere whose sieve lets every lane through, even lanes without a primitive.
 struct Suspected(Sphere);
 struct AllLanes;
 
@@ -303,7 +315,7 @@ fn a_leaf_that_leaves_no_lane_out() {
     over_the_soups(suspected, |soup, _, rng| soups::ray(soup, rng), in_every_layout);
 }
 
-/// Packed side by side or asked one by one, whatever is behind the pointers.
+/// Compares pointers to primitives, both in packed leaves and tested one by one.
 #[test]
 fn pointers() {
     type Alike = dyn Intersect<Scalar = f32, Payload = Barycentrics, Leaf = WatertightLeaf>;

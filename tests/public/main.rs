@@ -1,8 +1,10 @@
-//! The tests of what is public, all in one program: they compile the same kernels, in many modes for many instruction sets.
-//! As fifteen programs they took twice as long to compile.
+//! The tests of the public API, in one program.
 //!
-//! Apart from these, `exact` is also run as built for one processor, `portable` needs a feature, and `workspace` counts what the
-//! whole process allocates.
+//! They compile the same kernels, in many modes and for many instruction sets. As fifteen programs
+//! they would take twice as long to compile.
+//!
+//! Other programs are separate: `exact` also runs as built for a single processor, `portable` needs
+//! a feature, and `workspace` counts the allocations of the whole process.
 
 #[path = "../common"]
 mod common {

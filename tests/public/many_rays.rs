@@ -1,8 +1,10 @@
-//! No ray leaves a closed mesh, and no tree differs from the naive loop: over some 100,000 rays with the
-//! other tests, and as many as a person likes:
+//! No ray leaves a closed mesh, and no tree differs from the naive loop.
+//!
+//! Some 100,000 rays run with the other tests; `BVHKIT_RAYS` sets any other number:
 //!
 //! ```sh
-//! BVHKIT_RAYS=100000000 cargo test --release --test public many_rays:: -- --nocapture --test-threads 1
+//! BVHKIT_RAYS=100000000 cargo test --release --test public many_rays:: -- \
+//!     --nocapture --test-threads 1
 //! ```
 
 #[path = "../support/closed.rs"]
@@ -22,14 +24,16 @@ fn wanted() -> usize {
     std::env::var("BVHKIT_RAYS").map_or(100_000, |rays| rays.parse().expect("BVHKIT_RAYS is a number"))
 }
 
-/// Scales, and offsets up to a million: the last are a million times the size of what is there.
+/// Scales and offsets of meshes.
+///
+/// The last two offsets are a million times the size of the mesh.
 const PLACES: [(f64, f64); 8] =
     [(1e-6, 0.0), (1.0, 0.0), (1e6, 0.0), (1e-6, 1e-3), (1.0, 1e3), (1e6, 1e6), (1e-6, 1.0), (1.0, 1e6)];
 
-/// Rays of one origin.
+/// Maximum number of rays from one origin.
 const BATCH: usize = 20_000;
 
-/// A point in the mesh's box that is exactly inside.
+/// Returns a point of the mesh's box that is exactly inside the mesh.
 fn origin_inside(mesh: &[Triangle], rng: &mut Pcg64Mcg) -> [f32; 3] {
     let corners = || mesh.iter().flat_map(|t| [t.a, t.b, t.c]);
     let end = |axis: usize, pick: fn(f32, f32) -> f32| corners().map(|p| p[axis]).reduce(pick).unwrap();
@@ -45,7 +49,9 @@ fn origin_inside(mesh: &[Triangle], rng: &mut Pcg64Mcg) -> [f32; 3] {
     }
 }
 
-/// At a corner, or at a point of an edge, rounded; of every length, or as good as 1 long.
+/// Returns a ray aimed at a corner, or at a rounded point of an edge.
+///
+/// `number` chooses the target, and a direction of any length or of about length 1.
 fn aimed(mesh: &[Triangle], origin: [f32; 3], number: usize, rng: &mut Pcg64Mcg) -> Ray {
     let triangle = &mesh[rng.random_range(0..mesh.len())];
     let mut corners = [triangle.a, triangle.b, triangle.c];
@@ -61,7 +67,7 @@ fn aimed(mesh: &[Triangle], origin: [f32; 3], number: usize, rng: &mut Pcg64Mcg)
     }
 }
 
-/// How many of the rays hit nothing.
+/// Returns the number of rays that hit nothing.
 fn leaks<P: Intersect + Sync>(triangles: impl Iterator<Item = P>, rays: &[Ray]) -> usize {
     let bvh = Bvh::build(triangles).unwrap();
     let widened = |p: [f32; 3]| p.map(|x| P::Scalar::from_f64(f64::from(x)));
@@ -112,7 +118,9 @@ fn no_ray_leaves_a_closed_mesh() {
     assert!(rays > wanted() / 10 * 9);
 }
 
-/// Compared answers, and those that differ, over all heuristics and some leaf sizes.
+/// Returns the number of compared answers and the number of those that differ.
+///
+/// Four heuristics build trees, each with another leaf size.
 fn differences<M: Mode>(kind: usize, seed: u64) -> [usize; 2] {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let bare = soup::<M::Number>(kind, rng.random_range(1..64), &mut rng);
@@ -152,7 +160,7 @@ fn every_tree_is_the_naive_loop() {
         ("Fast f64", differences::<Fast<Triangle<f64>>>),
         ("Watertight f64", differences::<Watertight<Triangle<f64>>>),
     ];
-    // 2,000 answers to a scene.
+    // A scene compares 2,000 answers: 500 rays in four trees.
     let scenes = wanted().div_ceil(2000 * KINDS * modes.len()) as u64;
     let mut all = [0; 2];
     for (name, differences) in modes {

@@ -25,19 +25,19 @@ fn check<S: Scalar, P: Intersect<Scalar = S, Payload: Payload>>(
     assert_agreement(primitives, &at_hits(primitives, rays))
 }
 
-/// Triangles in a mode.
+/// Checks triangles in mode `M`.
 fn check_mode<M: Mode>(soup: &[Corners<M::Number>], aims: &[Aim]) -> usize {
     check(soup, aims, &triangles(soup).into_iter().map(M::of).collect::<Vec<_>>())
 }
 
-/// The same triangles through an index buffer, wound the other way.
+/// Checks the same triangles through an index buffer, with reversed winding.
 fn check_mesh<S: Scalar>(soup: &[Corners<S>], aims: &[Aim]) -> usize {
     let faces: Vec<_> = (0..soup.len() as u32).map(|i| [3 * i + 2, 3 * i + 1, 3 * i]).collect();
     let mesh = TriangleMesh::new(soup.as_flattened(), &faces).unwrap();
     check(soup, aims, &mesh.iter().collect::<Vec<_>>())
 }
 
-/// Through two pointers, as a scene of unlike primitives would be.
+/// Checks triangles behind two pointers, as in a scene of different primitives.
 fn check_boxed<S: Scalar>(soup: &[Corners<S>], aims: &[Aim]) -> usize {
     type Dyn<'a, S> = dyn Intersect<Scalar = S, Payload = Barycentrics<S>, Leaf = WatertightLeaf> + 'a;
     let owned = triangles(soup);
@@ -46,7 +46,7 @@ fn check_boxed<S: Scalar>(soup: &[Corners<S>], aims: &[Aim]) -> usize {
     check(soup, aims, &boxed)
 }
 
-/// A property for each scalar and kind of primitive.
+/// Defines a property for each scalar and kind of primitive.
 macro_rules! properties {
     ($($name:ident: $scalar:ty, $check:expr;)*) => {
         proptest! {
@@ -80,7 +80,7 @@ properties! {
     boxed_references_f64: f64, check_boxed;
 }
 
-/// Rays that miss prove little.
+/// Generated rays hit often: rays that miss prove little.
 #[test]
 fn the_aims_are_good() {
     let mut runner = TestRunner::deterministic();

@@ -1,4 +1,4 @@
-//! Arbitrary bytes as scene, rays and options: never a panic, always the naive answer.
+//! Arbitrary bytes as scene, rays and options: no panic, and the naive answer.
 
 use crate::common::answers::{Answers, Payload};
 use crate::common::heuristics;
@@ -8,7 +8,7 @@ use bvhkit::{
 };
 use proptest::prelude::*;
 
-/// Numbers out of bytes; zeros when they run out.
+/// A reader of numbers from bytes; after the last byte it reads zeros.
 struct Bytes<'a>(std::slice::Iter<'a, u8>);
 
 impl Bytes<'_> {
@@ -16,14 +16,17 @@ impl Bytes<'_> {
         usize::from(self.0.next().copied().unwrap_or(0))
     }
 
-    /// Half of them small and round, so that things meet; a few not finite; the others any bits.
+    /// Returns the next number.
+    ///
+    /// Half of the numbers are small and whole, so that rays meet primitives. A quarter are
+    /// multiples of 1/16, a few are special values, and the rest have the bits of any `f32`.
     fn number<S: Scalar>(&mut self) -> S {
         let special =
             [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, f64::from(f32::MAX), 1e-45, f64::MAX];
         let x = match self.byte() {
             byte @ 0..128 => byte as f64 % 8.0 - 3.0,
             byte @ 128..192 => byte as f64 / 16.0 - 10.0,
-            // Rare enough that some scenes are all valid.
+            // So rare that some scenes are all valid.
             byte @ 192..195 => special[(self.byte() + byte) % special.len()],
             _ => f64::from(f32::from_bits((0..4).fold(0, |bits, _| bits << 8 | self.byte() as u32))),
         };
@@ -40,7 +43,7 @@ impl Bytes<'_> {
     }
 }
 
-/// Builds and asks as the bytes say.
+/// Builds and queries a tree whose options, primitives and rays come from `bytes`.
 fn check<P: Intersect<Payload: Payload>>(bytes: &[u8], primitive: fn(&mut Bytes<'_>) -> P) {
     let mut bytes = Bytes(bytes.iter());
     let (heuristic, leaf_size, skip) = (bytes.byte(), bytes.byte(), bytes.byte());
@@ -82,7 +85,7 @@ fn sphere<S: Scalar>(bytes: &mut Bytes<'_>) -> Sphere<S> {
 }
 
 fn cuboid<S: Scalar>(bytes: &mut Bytes<'_>) -> Aabb<S> {
-    // Mostly the right way round.
+    // Most boxes are not inverted.
     match bytes.byte() {
         0 => Aabb::new(bytes.point(), bytes.point()),
         _ => Aabb::of_points([bytes.point(), bytes.point()]),

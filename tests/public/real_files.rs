@@ -1,7 +1,7 @@
-//! The scenes of the world outside, if they are there: whole files, real distributions, the naive answer.
+//! Real scene files against the naive loop, if the files are there.
 //!
-//! The folder is that in `BVHKIT_SCENES`, or `../shared/scenes` beside the crate. Without it the tests
-//! pass and say so.
+//! The folder is the one that `BVHKIT_SCENES` names, or `../shared/scenes` beside the crate.
+//! Without the folder, the tests pass and say so.
 
 use crate::common::answers::{Answers, key};
 use crate::common::rays::Aims;
@@ -11,7 +11,7 @@ use bvhkit::{Bvh, reference};
 use rayon::prelude::*;
 use std::path::PathBuf;
 
-/// The files and their numbers of triangles and spheres.
+/// The files, each with its number of triangles and spheres.
 const FILES: [(&str, usize); 15] = [
     ("cow.dae", 5_856),
     ("teapot.dae", 2_464),
@@ -30,7 +30,7 @@ const FILES: [(&str, usize); 15] = [
     ("hairball.glb", 240_000),
 ];
 
-/// The file's shapes; none, with a message, if there is no such file.
+/// Returns the shapes of a file; if it is missing, says so and returns `None`.
 fn load(name: &str) -> Option<Vec<Shape>> {
     let folder = std::env::var_os("BVHKIT_SCENES").map_or_else(
         || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/scenes")),
@@ -61,7 +61,7 @@ fn every_file_loads_and_agrees_with_the_naive_loop() {
         assert_eq!(shapes.len(), count, "{name}");
         let aims = Aims::new(&shapes);
         let trees = trees(&shapes);
-        // Few rays in the larger scenes.
+        // Larger scenes get fewer rays.
         let rays: Vec<_> = (0..(10_000_000 / shapes.len() as u64).min(400)).map(|i| aims.ray(i)).collect();
         let hits: usize = rays
             .par_iter()
@@ -77,8 +77,9 @@ fn every_file_loads_and_agrees_with_the_naive_loop() {
     }
 }
 
-/// Naive tests to spend on each file, so that small ones get more rays; and the most rays for one.
+/// Tests of one shape to spend on each file, so that smaller files get more rays.
 const TESTS: u64 = 3_000_000_000;
+/// Maximum number of rays for one file.
 const MOST_RAYS: u64 = 3_000_000;
 
 #[test]

@@ -1,4 +1,7 @@
-//! What kernels ask of primitives whose type they do not know, and what safe code can do with what it is handed.
+//! Safe code around kernels: unknown primitives, foreign places, lengths of lists.
+//!
+//! Kernels call primitives whose type they do not know. Safe code can open places of one tree in
+//! another, and pass lists of different lengths.
 #![forbid(unsafe_code)]
 
 use bvhkit::{
@@ -7,7 +10,7 @@ use bvhkit::{
 };
 use std::sync::Mutex;
 
-/// A sphere that keeps the ends of the rays it is shown.
+/// A sphere that records the end of each ray that it is tested with.
 struct Watched<'a>(Sphere, &'a Mutex<Vec<f32>>);
 
 impl Primitive for Watched<'_> {
@@ -26,7 +29,7 @@ impl Intersect for Watched<'_> {
     }
 }
 
-/// Ends of the rays that primitives in a row are shown.
+/// Returns the ends of the rays that primitives in a row are tested with.
 fn ends<L: for<'a> Traverse<Watched<'a>>>(any: bool) -> Vec<f32> {
     let ends = Mutex::new(Vec::new());
     let row: Vec<_> =
@@ -99,7 +102,7 @@ fn nested_hierarchies_answer_as_the_naive_loop_does() {
     assert!(hits > 100, "{hits}");
 }
 
-/// One kernel, whatever holds the triangle.
+/// The kernel is the same, whatever pointer holds the triangle.
 #[test]
 fn triangles_behind_pointers_have_the_hits_of_triangles() {
     let triangles: Vec<Triangle> = (0..50u8)
@@ -118,7 +121,7 @@ fn triangles_behind_pointers_have_the_hits_of_triangles() {
     assert_eq!(Bvh::build(&triangles).unwrap().closest_hit(&ray), expected);
 }
 
-/// Places found in one tree, opened in another.
+/// Opens every place of `large` in `small` too; returns how many exist there.
 fn mix<P: Primitive, L: Layout<P>>(large: &L, small: &L) -> usize {
     let (mut open, mut opened) = (Vec::from_iter(large.root()), 0);
     while let Some(place) = open.pop() {
@@ -136,7 +139,7 @@ fn places_of_another_tree_are_no_way_out_of_a_trees_memory() {
     fn both<L: Layout<Sphere> + Traverse<Sphere>>(spheres: impl Fn(u16) -> Vec<Sphere>) {
         let build = |n| Bvh::builder().layout::<L>().build(spheres(n)).unwrap();
         let (large, small) = (build(5000), build(20));
-        // Nearly all lie beyond the small tree's memory.
+        // Nearly all places are beyond the memory of the small tree.
         let all = mix::<Sphere, L>(large.layout(), large.layout());
         assert!(mix::<Sphere, L>(large.layout(), small.layout()) < all / 4);
     }
@@ -145,7 +148,7 @@ fn places_of_another_tree_are_no_way_out_of_a_trees_memory() {
     both::<Tree>(|n| spheres(n).collect());
 }
 
-/// Fewer rays than places, and fewer places than rays, by what is answered at a time and more.
+/// Checks lists with fewer rays than places for hits, and with more.
 fn lists<P: Intersect<Scalar = f32, Payload: PartialEq + std::fmt::Debug>, L: Traverse<P>>(bvh: &Bvh<P, L>) {
     let rays: Vec<Ray> = (0..200u8).map(|i| Ray::new([f32::from(i), -9.0, 0.0], [0.0, 1.0, 0.0])).collect();
     for (count, places) in [(10, 20), (74, 128), (128, 74), (64, 65), (0, 3), (200, 200)] {
@@ -164,7 +167,7 @@ fn lists<P: Intersect<Scalar = f32, Payload: PartialEq + std::fmt::Debug>, L: Tr
 
 #[test]
 fn lists_of_other_lengths_leave_the_rest_alone() {
-    // Some rays miss.
+    // The spheres have gaps, so some rays miss.
     let spheres: Vec<Sphere> =
         (0..40u8).map(|i| Sphere::new([f32::from(5 * i + 2), 0.0, 0.0], 1.0)).collect();
     lists(&Bvh::build(&spheres).unwrap());

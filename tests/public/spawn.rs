@@ -17,8 +17,10 @@ fn unit(a: Point) -> Point {
     a.map(|x| x / length)
 }
 
-/// Triangles from 1e-3 to 1e3 in size, as far from the origin, some 10,000 times as long as wide; a
-/// point on each, and a direction away from it at any angle down to 1e-5.
+/// Random triangles, points on them, and directions away from those points.
+///
+/// Sizes and distances from the origin are from 1e-3 to 1e3. Some triangles are 10,000 times as
+/// long as wide. Directions have any angle to the triangle, down to 1e-5.
 struct Cases {
     rng: Pcg64Mcg,
 }
@@ -42,7 +44,7 @@ impl Cases {
         let [a, b, c] = [0; 3].map(|_| self.point(size));
         let width = if self.rng.random_range(0..5) == 0 { 1e-4 } else { 1.0 };
         let c = [0, 1, 2].map(|k| b[k] + width * (c[k] - b[k]));
-        // A third lies across an axis, half of these where the coordinate is zero.
+        // A third of the triangles is perpendicular to an axis, half of these at coordinate zero.
         let (axis, flat) = (self.rng.random_range(0..3), self.rng.random_range(0..6));
         let corner = |p: Point| {
             [0, 1, 2].map(|k| match flat {
@@ -69,7 +71,7 @@ impl Cases {
     }
 }
 
-/// How many of 100,000 rays hit the triangle that they start from.
+/// Returns how many of 100,000 rays hit the triangle that they start from.
 fn hits_itself<S: Scalar>(seed: u64, intersects: impl Fn(Triangle<S>, &Ray<S>) -> bool) -> usize {
     let mut cases = Cases::new(seed);
     (0..100_000)
@@ -89,7 +91,7 @@ fn a_triangle_is_not_hit_by_rays_that_leave_it() {
     assert_eq!(hits_itself::<f64>(3, |triangle, ray| triangle.intersect(ray).is_some()), 0);
 }
 
-/// The test has power: without the offset, rays do hit what they start from.
+/// Without the offset, rays do hit the triangle they leave: the test has power.
 #[test]
 fn rays_from_the_rounded_point_itself_do_hit() {
     let on_the_spot = |triangle: Triangle, ray: &Ray| {
@@ -109,7 +111,8 @@ fn the_start_is_close_to_the_hit() {
         let point = triangle.surface_point(at);
         let start = point.spawn(cases.direction(&point)).origin;
         for (from, to) in point.position.into_iter().zip(start) {
-            // Three roundings on the axis itself, and what the normal brings over from the others.
+            // Three roundings on the axis itself, and the share that the
+            // normal brings from the other axes.
             let largest = triangle.aabb().max.into_iter().chain(triangle.aabb().min).map(f32::abs);
             let bound = 3.0 * f32::EPSILON * largest.fold(0.0, f32::max);
             assert!((to - from).abs() <= bound, "{point:?} {start:?}");
@@ -133,7 +136,7 @@ fn a_sphere_is_not_hit_by_rays_that_leave_it() {
             let direction = cases.direction(&point);
             let outward = dot(direction.map(S::to_f64), point.normal.map(S::to_f64)) > 0.0;
             let again = sphere.intersect(&point.spawn(direction));
-            // A ray into the sphere hits the other side, no nearer than its angle says.
+            // A ray into the sphere hits only the far side, at 0.9 of its chord or more.
             let chord = -2.0 * size * dot(direction.map(S::to_f64), point.normal.map(S::to_f64));
             assert!(
                 again.is_none_or(|(t, ())| !outward && t.to_f64() > 0.9 * chord),

@@ -1,16 +1,16 @@
-//! The driver's word to heuristics: what they are shown, and how their proposals are carried out.
+//! The driver's contract with heuristics: nodes shown, proposals carried out.
 
 use crate::common::hostile::Hostile;
 use bvhkit::heuristic::{BuildNode, Heuristic, Split};
 use bvhkit::{Aabb, Axis, Bvh, Sphere};
 use std::sync::Mutex;
 
-/// Spheres at these x.
+/// Returns spheres at these x coordinates.
 fn at(xs: &[f32]) -> Vec<Sphere> {
     xs.iter().map(|&x| Sphere::new([x, 0.0, 0.0], 0.5)).collect()
 }
 
-/// Proposes one split at the root and leaves below, and notes whom it meets there.
+/// A heuristic that splits only the root, and records the references below it.
 struct Spy {
     split: Split,
     below: Mutex<Vec<Vec<u32>>>,
@@ -28,7 +28,9 @@ impl Heuristic<f32> for Spy {
     }
 }
 
-/// The indices on both sides of a split at the root, the side with the lowest first.
+/// Returns the indices on both sides of a split at the root.
+///
+/// The side with the lowest index comes first.
 fn sides(xs: &[f32], split: Split) -> [Vec<u32>; 2] {
     let spy = Spy { split, below: Mutex::default() };
     Bvh::builder().heuristic(&spy).max_leaf_size(xs.len()).build(at(xs)).unwrap();
@@ -54,7 +56,7 @@ fn a_count_takes_the_smallest_and_of_equal_ones_the_lowest_index() {
     }
 }
 
-/// Checks each node it is shown.
+/// A heuristic that checks each node it is shown.
 struct Checked;
 
 impl Heuristic<f32> for Checked {

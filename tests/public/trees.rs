@@ -1,4 +1,7 @@
-//! What is done to trees beside splitting: reinsertion, references in several leaves, builds in a hurry.
+//! Tests of builds beyond plain splits.
+//!
+//! They cover reinsertion, spatial splits, progress callbacks, builds
+//! in a hurry, clusters and codes.
 
 use crate::common::heuristics;
 use bvhkit::heuristic::{BinnedSah, BuildNode, Clustered, Heuristic, Median, Morton, SpatialSah, Split};
@@ -12,7 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-/// Proposes always the same.
+/// A heuristic that derives its split only from the number of references.
 struct Stubborn(fn(usize) -> Split);
 
 impl Heuristic<f32> for Stubborn {
@@ -21,7 +24,7 @@ impl Heuristic<f32> for Stubborn {
     }
 }
 
-/// Small triangles, and every tenth as long as the scene.
+/// Returns small triangles, and every tenth as long as the scene.
 fn triangles(n: usize) -> Vec<Fast<Triangle>> {
     let mut rng = Pcg64Mcg::seed_from_u64(n as u64);
     let mut point = |size: f32| [0.0; 3].map(|_: f32| rng.random_range(-size..size));
@@ -135,7 +138,7 @@ fn a_build_stops_when_it_is_told_to() {
     }
 }
 
-/// Says `pace` from a progress on.
+/// Returns a progress callback that answers `pace` from the progress `limit` on.
 fn from(limit: f64, pace: BuildControl) -> impl Fn(f64) -> BuildControl + Send + Sync + 'static {
     move |progress| if progress >= limit { pace } else { BuildControl::Steady }
 }
@@ -164,14 +167,16 @@ fn a_build_in_a_hurry_is_coarser_and_answers_alike() {
 #[test]
 fn a_hurry_below_a_long_path_keeps_the_depth_bound() {
     let triangles: Vec<_> = triangles(20_000).into_iter().chain(converging()).collect();
-    // One by one down to half of the depth, then told to hurry.
+    // The heuristic splits off single triangles down to half of the
+    // depth, then the build has to hurry.
     let asked = Arc::new(AtomicUsize::new(0));
     let watcher = {
         let asked = Arc::clone(&asked);
         move |_| if asked.fetch_add(1, Relaxed) < 40 { BuildControl::Steady } else { BuildControl::Hurry }
     };
     let builder = Bvh::builder().heuristic(Stubborn(|_| Split::Count { axis: Axis::X, left: 1 }));
-    let bvh = builder.threads(1).max_leaf_size(1).progress(watcher).layout::<Tree>().build(triangles).unwrap();
+    let bvh =
+        builder.threads(1).max_leaf_size(1).progress(watcher).layout::<Tree>().build(triangles).unwrap();
     bvh.check().unwrap();
     let depth = bvh.report().max_depth;
     assert!(depth > 50 && depth <= MAX_DEPTH, "{depth}");
@@ -222,7 +227,9 @@ fn options_are_kept_in_any_order() {
     assert!(preset.layout() != plain.layout());
 }
 
-/// In each of 64 places, ever nearer to it on each axis: along the curve they hang one below the other.
+/// Returns triangles that converge to each of 64 points.
+///
+/// Along the morton curve, each triangle hangs below the one before.
 fn converging() -> Vec<Fast<Triangle>> {
     let at = |[x, y, z]: [f32; 3]| Fast(Triangle::new([x, y, z], [x + 1e-6, y, z], [x, y + 1e-6, z]));
     let places = (0..64u8).map(|place| [place & 3, place >> 2 & 3, place >> 4].map(|k| f32::from(k) * 0.25));
@@ -251,7 +258,9 @@ fn clusters_below_a_long_path_keep_the_depth_bound() {
     assert_answers(&converging(), Bvh::builder().quality(Quality::Fast));
 }
 
-/// Wherever a cluster goes: below other nodes, or into two leaves with a part of its box each.
+/// Clusters keep their leaves below other nodes, and after spatial splits.
+///
+/// A spatial split puts a cluster into two leaves, each with a part of its box.
 #[test]
 fn clusters_keep_the_leaves_that_they_were_cut_into() {
     let triangles = triangles(6_000);
@@ -260,7 +269,8 @@ fn clusters_keep_the_leaves_that_they_were_cut_into() {
     let moved = Bvh::builder().quality(Quality::Fast).optimise(optimise).build(&triangles).unwrap();
     moved.check().unwrap();
     assert!(moved.report().sah_cost < plain.sah_cost);
-    // Small clusters may be joined to one leaf, here and there; cut anew, all leaves would be full.
+    // Reinsertion may join a few small clusters to one leaf. If clusters were partitioned
+    // again, all leaves would be full.
     assert!(plain.leaf_sizes.mean < 7.0);
     assert!((moved.report().leaf_sizes.mean - plain.leaf_sizes.mean).abs() < 0.1);
     let split = Clustered { size: 100, heuristic: SpatialSah { growth: 1.0, ..SpatialSah::default() } };
@@ -270,7 +280,7 @@ fn clusters_keep_the_leaves_that_they_were_cut_into() {
     assert_answers(&triangles, Bvh::builder().quality(Quality::Fast).optimise(optimise));
 }
 
-/// Codes of these numbers of bits, as many as references and more.
+/// A heuristic with codes from a function, and a number of codes too many.
 struct Coded(fn(usize) -> u64, usize);
 
 impl Heuristic<f32> for Coded {
@@ -305,6 +315,14 @@ fn any_codes_make_a_tree_and_as_many_as_there_are_references() {
             );
             assert!(bvh.layout() == builder().threads(3).build(&triangles).unwrap().layout(), "{number}");
         }
+    }
+    // Neighbouring keys that differ in each of their 64 bits.
+    for n in 2..40 {
+        let ends = Coded(|i| if i % 2 == 0 { 0 } else { u64::MAX }, 0);
+        let bvh = Bvh::builder().heuristic(ends).max_leaf_size(1).layout::<Tree>();
+        let bvh = bvh.build(&triangles[..n]).unwrap();
+        bvh.check().unwrap();
+        assert_eq!(bvh.report().leaf_sizes.histogram[1], n);
     }
     let in_order = Bvh::builder().heuristic(Coded(|i| i as u64, 0)).max_leaf_size(1).layout::<Tree>();
     assert_eq!(in_order.build(&triangles[..8192]).unwrap().report().max_depth, 13, "13 bits");

@@ -1,11 +1,13 @@
-//! Closed meshes: triangles that share the very bits of their corners, each edge between two of them.
+//! Closed meshes: shared corners are bitwise equal, and edges have two triangles.
 
 use bvhkit::reference::exact;
 use bvhkit::{Ray, Triangle};
 use glam::Vec3;
 use std::f32::consts::{PI, TAU};
 
-/// One of each kind, of about `n` triangles, about 1 in size around the origin, with names.
+/// Returns one mesh of each kind, with its name.
+///
+/// Each has about `n` triangles, a size of about 1, and a place at or around the origin.
 pub fn all(n: usize) -> [(&'static str, Vec<Triangle>); 5] {
     let spike = |p: Vec3| (5.0 * p.x).cos().powi(4) * (6.0 * p.z.atan2(p.x)).sin().powi(2);
     [
@@ -17,16 +19,20 @@ pub fn all(n: usize) -> [(&'static str, Vec<Triangle>); 5] {
     ]
 }
 
-/// Every corner scaled, then shifted, not the same on all axes, for the diagonal is no place like others; and
-/// rounded: equal ones stay equal.
+/// Returns the mesh with every corner scaled, then shifted, then rounded.
+///
+/// The shift differs between axes, because the diagonal is a special
+/// place. Equal corners stay equal.
 pub fn placed(mesh: &[Triangle], scale: f64, offset: f64) -> Vec<Triangle> {
     let shift = [1.0, -0.75, 0.5].map(|x| x * offset);
     let place = |p: [f32; 3]| [0, 1, 2].map(|k| (f64::from(p[k]) * scale + shift[k]) as f32);
     mesh.iter().map(|t| Triangle::new(place(t.a), place(t.b), place(t.c))).collect()
 }
 
-/// Whether the ray's origin is exactly inside and on no triangle: along a ray that passes no edge, the number of
-/// hits is odd. `None` if this ray passes an edge or does not say.
+/// Returns whether the ray's origin is exactly inside and on no triangle.
+///
+/// Along a ray that passes no edge, a point inside has an odd number of hits. `None` if this ray
+/// passes an edge or starts on a triangle.
 pub fn encloses(mesh: &[Triangle], ray: &Ray) -> Option<bool> {
     let hits = exact::hits(mesh, ray);
     let is_generic = hits.iter().all(|hit| {
@@ -36,9 +42,11 @@ pub fn encloses(mesh: &[Triangle], ray: &Ray) -> Option<bool> {
     is_generic.then_some(hits.len() % 2 == 1)
 }
 
-/// A sphere by columns from pole to pole, then shaped. With an `unevenness` of 1 its triangles are alike; with 4
-/// the widths of columns and the heights of rows each go down to some millionths of the largest, so
-/// that there are needles of both kinds, and dust.
+/// Returns a sphere of columns from pole to pole, deformed by `shape`.
+///
+/// With an `unevenness` of 1, the triangles are alike. With 4, the widths of columns and
+/// the heights of rows each go down to some millionths of the largest. So there are
+/// needles of both kinds, and dust.
 fn globe(n: usize, unevenness: i32, shape: impl Fn(Vec3) -> Vec3) -> Vec<Triangle> {
     let count = ((n / 2) as f32).sqrt() as usize;
     let (columns, rows) = (count.max(3), count.max(2));
@@ -53,8 +61,10 @@ fn globe(n: usize, unevenness: i32, shape: impl Fn(Vec3) -> Vec3) -> Vec<Triangl
     faces(columns, rows, vertex)
 }
 
-/// The unit cube, of about `n` triangles, with a corner at the origin: faces lie in the planes in which a
-/// coordinate is 0 or 1, where what is relative to the coordinate vanishes, and many edges are parallel to axes.
+/// Returns the unit cube, with about `n` triangles and a corner at the origin.
+///
+/// Faces are in the planes in which a coordinate is 0 or 1. At 0, a tolerance relative to the
+/// coordinate vanishes. Many edges are parallel to axes.
 fn cube(n: usize) -> Vec<Triangle> {
     let cells = ((n / 12) as f32).sqrt() as usize;
     let faces = (0..3).flat_map(|axis| [0.0, 1.0].map(|side| (axis, side)));
@@ -73,7 +83,7 @@ fn cube(n: usize) -> Vec<Triangle> {
         .collect()
 }
 
-/// A tube along a trefoil, which passes close by itself.
+/// Returns a tube along a trefoil knot, which passes close to itself.
 fn knot(n: usize) -> Vec<Triangle> {
     let columns = ((n / 40) as f32).sqrt() as usize + 3;
     let rows = (n / 2 / columns).max(12);
@@ -82,7 +92,7 @@ fn knot(n: usize) -> Vec<Triangle> {
         Vec3::new(around * u.cos(), 0.25 * (1.5 * u).sin(), around * u.sin())
     };
     let vertex = |i: usize, j: usize| {
-        // Twice around the middle, three times around the tube it is wound on.
+        // Twice around the center, and three times around the torus that carries the knot.
         let u = 2.0 * TAU * (j % rows) as f32 / rows as f32;
         let ahead = trefoil(u + 1e-2) - trefoil(u - 1e-2);
         let (right, up) = ahead.normalize().any_orthonormal_pair();
@@ -92,7 +102,7 @@ fn knot(n: usize) -> Vec<Triangle> {
     faces(columns, rows, vertex)
 }
 
-/// Two triangles to a cell, none where the cell has no area.
+/// Returns two triangles for each cell, without those that have equal corners.
 fn faces(columns: usize, rows: usize, vertex: impl Fn(usize, usize) -> Vec3) -> Vec<Triangle> {
     let cells = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
     let faces = cells.flat_map(|(i, j)| {

@@ -1,5 +1,6 @@
-//! Procedural scenes and rays, for tests and benches. [`scenes::all`] and [`rays::Rays`] reach
-//! everything here.
+//! Procedural scenes and rays, for tests and benches.
+//!
+//! [`scenes::all`] and [`rays::Rays`] reach everything here.
 
 pub mod rays;
 pub mod scenes;

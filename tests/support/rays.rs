@@ -1,4 +1,6 @@
-//! Rays as renderers trace them, by kind: how well neighbours agree is what makes them quick or slow.
+//! Rays of the kinds that renderers trace.
+//!
+//! The coherence of neighbouring rays makes a kind fast or slow.
 
 use super::scenes::NamedScene;
 use bvhkit::{Aabb, Bvh, Intersect, Ray, Triangle};
@@ -7,9 +9,9 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 use std::f32::consts::TAU;
 
-/// What rays set out from.
+/// A primitive from which rays can start.
 pub trait Surface: Intersect<Scalar = f32> + Copy + Sync {
-    /// The normal where it was hit, on either side; none where there is none.
+    /// Returns the normal at a hit point, on either side; `None` if there is none.
     fn normal(&self, at: Vec3) -> Option<Vec3>;
 }
 
@@ -22,19 +24,20 @@ impl Surface for Triangle {
 
 /// Rays of each kind.
 pub struct Rays {
-    /// From a pinhole camera, by rows of its picture: coherent.
+    /// Coherent rays from a pinhole camera, by rows of its picture.
     pub primary: Vec<Ray>,
-    /// From where primary rays hit, cosine-distributed about the normal: one diffuse bounce.
+    /// One diffuse bounce: from primary hits, cosine-distributed about the normal.
     pub diffuse: Vec<Ray>,
-    /// From there to a lamp beside the camera, at which they end.
+    /// From primary hits to a lamp beside the camera, where the rays end.
     pub shadow: Vec<Ray>,
-    /// From anywhere in the scene's box to anywhere: incoherent.
+    /// Incoherent rays: from anywhere in the scene's box in any direction.
     pub random: Vec<Ray>,
 }
 
 impl Rays {
-    /// `n` primary and random rays; as many diffuse and shadow rays if the camera sees anything. Among the scene's
-    /// triangles, or whatever is in their place.
+    /// Generates `n` rays of each kind, among the scene's triangles or their stand-ins.
+    ///
+    /// There are no diffuse and shadow rays if the camera sees nothing.
     pub fn new<P: Surface>(primitives: &[P], scene: &NamedScene, n: usize) -> Self {
         let mut rng = Pcg32::seed_from_u64(4);
         let primary = camera(scene, n);
@@ -53,7 +56,7 @@ impl Rays {
         let lamp = scene.eye + 0.2 * right + 0.2 * forward.length() * Vec3::Y;
         let shadow = |&(point, _): &(Vec3, Vec3)| {
             let way = lamp + 0.05 * forward.length() * sphere(&mut rng) - point;
-            // Ends short of the lamp, which would be hit itself if it had a shape.
+            // The ray ends short of the lamp, which it would hit if the lamp had a shape.
             Ray::new(point, way.normalize()).with_interval(0.0, 0.999 * way.length())
         };
         let shadow = surface.iter().cycle().take(n).map(shadow).collect();
@@ -68,7 +71,9 @@ impl Rays {
     }
 }
 
-/// A square picture of `n` rays or, if `n` is no square, its first `n`; 60 degrees wide.
+/// Returns the rays of a square picture, 60 degrees wide.
+///
+/// If `n` is not a square number, they are the first `n` rays of the picture.
 fn camera(scene: &NamedScene, n: usize) -> Vec<Ray> {
     let side = (n as f32).sqrt().ceil() as usize;
     let forward = (scene.target - scene.eye).normalize();
@@ -83,8 +88,10 @@ fn camera(scene: &NamedScene, n: usize) -> Vec<Ray> {
         .collect()
 }
 
-/// The points where rays first hit, each with the normal on the ray's side; lifted off the surface
-/// by a little, so that what sets out there does not hit where it came from.
+/// Returns the points where rays first hit, with the normal on the ray's side.
+///
+/// The points are lifted slightly off the surface, so that a ray that starts there
+/// does not hit the surface again.
 pub fn seen<P: Surface>(primitives: &[P], scene: &NamedScene, rays: &[Ray]) -> Vec<(Vec3, Vec3)> {
     let bvh = Bvh::build(primitives.iter().copied()).expect("the scene's coordinates are finite");
     let lift = 1e-5 * scene.eye.distance(scene.target);
@@ -98,7 +105,7 @@ pub fn seen<P: Surface>(primitives: &[P], scene: &NamedScene, rays: &[Ray]) -> V
     rays.iter().filter_map(look).collect()
 }
 
-/// A direction, evenly distributed over the unit sphere.
+/// Returns a direction, uniformly distributed over the unit sphere.
 pub fn sphere(rng: &mut Pcg32) -> Vec3 {
     let z = 1.0 - 2.0 * rng.random::<f32>();
     let (sin, cos) = (TAU * rng.random::<f32>()).sin_cos();

@@ -1,4 +1,4 @@
-//! Compares everyone's answers, before anyone's time is taken.
+//! Comparison of all answers, before anything is timed.
 
 use super::family::{Family, Member};
 use super::kinds::Kind;
@@ -6,21 +6,22 @@ use super::tracer::{Query, Way};
 use crate::shared::agreement::{Answers, Hit, assert_exact};
 use bvhkit::Ray;
 
-/// What came of one kind of ray.
+/// The result of a check with one kind of ray.
 pub struct Check {
-    /// How many rays the naive reference answered too.
+    /// The number of rays that the naive reference answers too.
     pub sample: usize,
-    /// For each member: of those, on how many it differs visibly.
+    /// For each member, the number of those rays on which it differs visibly.
     pub differ: Vec<usize>,
     /// The share of all rays that hit.
     pub hit: f64,
 }
 
-/// One check for each kind of ray.
+/// Checks a family and returns one check for each kind of ray.
 ///
 /// # Panics
-/// If ours do not agree, bit for bit, with the naive reference and with each other: in both queries, one by one and in
-/// batches, in both orders.
+///
+/// If ours do not agree, bit for bit, with the naive reference and with each other: in both
+/// queries, one by one and in batches, in both orders.
 pub fn check(scene: &str, family: &Family, naive_tests: usize) -> Vec<Check> {
     let tests = naive_tests / family.kinds.len();
     family.kinds.iter().map(|kind| check_kind(scene, family, kind, tests)).collect()

@@ -1,4 +1,4 @@
-//! Who is measured: families of hierarchies over the same primitives, to which the same rays are put.
+//! Families: hierarchies over the same primitives, measured with the same rays.
 
 use super::kinds::Kind;
 use super::tracer::Tracer;
@@ -10,19 +10,19 @@ pub struct Family {
     pub primitives: &'static str,
     pub kinds: Rc<[Kind]>,
     pub naive: Box<dyn Naive>,
-    /// The first is ours.
+    /// The hierarchies, of which the first is ours.
     pub members: Vec<Member>,
 }
 
 pub struct Member {
-    /// Its layout, or whatever sets it apart from the others.
+    /// The layout, or whatever tells the member from the others.
     pub name: String,
-    /// Whose answers are promised to be the naive reference's; or a peer's.
+    /// Whether it is this crate's, which promises the naive reference's answers.
     pub ours: bool,
     pub tracer: Box<dyn Tracer>,
 }
 
-/// The primitives without a tree.
+/// Queries of primitives without a tree.
 pub trait Naive {
     fn count(&self) -> usize;
     fn answers(&self, rays: &[Ray]) -> Answers;

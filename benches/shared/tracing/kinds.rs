@@ -1,4 +1,4 @@
-//! Rays by kind, each with the question that renderers ask of it, in two orders.
+//! Rays by kind, in two orders, each with the query that renderers make.
 
 use super::tracer::Query;
 use crate::support::rays::{Rays, Surface, seen, sphere};
@@ -10,14 +10,14 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 use std::f32::consts::TAU;
 
-/// The same rays in two orders.
+/// A kind of ray, with the same rays in two orders.
 pub struct Kind {
     pub name: &'static str,
     pub query: Query,
-    /// As a renderer makes them, neighbours in its picture one after another.
+    /// In the order of a renderer: neighbours in its picture one after another.
     pub natural: Vec<Ray>,
     pub shuffled: Vec<Ray>,
-    /// The places of the shuffled rays among the others.
+    /// The places of the shuffled rays in the natural order.
     pub order: Vec<usize>,
 }
 
@@ -30,8 +30,10 @@ impl Kind {
     }
 }
 
-/// About `n` rays of each kind, more of quick ones and fewer of slow ones; always the same kinds in the same order. None
-/// of those that set out from what the camera sees if it sees nothing.
+/// Returns about `n` rays of each kind, always the same kinds in the same order.
+///
+/// There are more rays of quick kinds and fewer of slow kinds. If the camera sees nothing, there
+/// are none of the kinds that start on visible surfaces.
 pub fn all<P: Surface>(primitives: &[P], scene: &NamedScene, n: usize) -> Vec<Kind> {
     let bvh = Bvh::build(primitives.iter().copied()).expect("the scene's coordinates are finite");
     let Rays { primary, diffuse, shadow, random } = Rays::new(primitives, scene, n);
@@ -55,10 +57,10 @@ pub fn all<P: Surface>(primitives: &[P], scene: &NamedScene, n: usize) -> Vec<Ki
         let (sin, cos) = (TAU * rng.random::<f32>()).sin_cos();
         Ray::new(center + diagonal * away, cos * right + sin * up)
     };
-    // Answered at once: so many that the time does not go into waking threads.
+    // These are answered at once. There are so many that the time does not go into waking threads.
     let beside = (0..8 * n).map(tangent).collect();
 
-    // A ray meets many: an eighth takes as long.
+    // Each of these rays meets many primitives, so an eighth of the rays takes as long.
     let few = random.iter().step_by(8).copied().collect();
     vec![
         Kind::new("primary", Query::Closest, primary),

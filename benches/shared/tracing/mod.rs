@@ -1,4 +1,4 @@
-//! What those share that put rays of every kind to hierarchies side by side.
+//! Rays of every kind, traced through several hierarchies side by side.
 
 pub mod check;
 pub mod family;

@@ -1,4 +1,4 @@
-//! `obvhs`, whose rays come one by one.
+//! `obvhs`, which takes rays one by one.
 
 use super::tracer::{Job, Query, Tracer, Way, job, one_by_one};
 use crate::shared::agreement::Hit;
@@ -21,7 +21,7 @@ impl<B: Traversal + Sync> Tracer for Peer<B> {
         }
     }
 
-    /// Not in order.
+    /// Returns `None`: the peer does not find all hits in order.
     fn all_hits(&self, _: &Ray) -> Option<Vec<Hit>> {
         None
     }

@@ -1,4 +1,4 @@
-//! How fast all contestants are with one kind of ray.
+//! The speed of all contestants with one kind of ray.
 
 use super::family::Family;
 use super::kinds::Kind;
@@ -7,27 +7,30 @@ use crate::shared::timing::{interleaved, mega_rays};
 use bvhkit::Ray;
 use std::sync::{Mutex, PoisonError};
 
-/// What is the same for all who take turns.
+/// The settings that all contestants of a measurement share.
 #[derive(Clone, Copy)]
 pub struct Pass {
     pub is_shuffled: bool,
     pub way: Way,
-    /// 1, or as many as rayon has.
+    /// The number of threads: 1, or as many as rayon has.
     pub threads: usize,
 }
 
-/// Who can do it, and how.
+/// A member that has the query, and its jobs.
 struct Contestant<'a> {
     place: usize,
-    /// For all jobs together.
+    /// The number of rays in all jobs together.
     rays: usize,
-    /// One for each thread.
+    /// One job for each thread.
     jobs: Vec<Mutex<Job<'a>>>,
 }
 
-/// Millions of rays a second for each member of each family, all taking turns; none where there is no such query.
+/// Returns millions of rays per second for each member of each family.
 ///
-/// Every thread traces all the rays, each starting at another one: so each has as much to do as one alone.
+/// `None` stands for a member without such a query. The members take turns.
+///
+/// Every thread traces all the rays, each from another start. So each thread
+/// has as much to do as one alone.
 pub fn measure(families: &[Family], kind: usize, pass: Pass, repetitions: usize) -> Vec<Option<f64>> {
     let lists: Vec<_> = families.iter().map(|family| lists(&family.kinds[kind], pass)).collect();
     let members = families.iter().zip(&lists).flat_map(|(family, lists)| {
@@ -43,7 +46,8 @@ pub fn measure(families: &[Family], kind: usize, pass: Pass, repetitions: usize)
         }
         speeds.push(None);
     }
-    // The others have emptied the caches meanwhile, which would take more time to fill than the rays take.
+    // The untimed run fills the caches, which the other contestants have emptied meanwhile. That
+    // would take longer than the rays.
     let trace = |i: usize| run(&contestants[i].jobs);
     let times = interleaved(contestants.len(), repetitions, trace, trace);
     for (contestant, time) in contestants.iter().zip(times) {
@@ -52,7 +56,7 @@ pub fn measure(families: &[Family], kind: usize, pass: Pass, repetitions: usize)
     speeds
 }
 
-/// A list for each thread.
+/// Returns a list of rays for each thread.
 fn lists(kind: &Kind, pass: Pass) -> Vec<Vec<Ray>> {
     let rays = if pass.is_shuffled { &kind.shuffled } else { &kind.natural };
     let from = |thread: usize| {

@@ -1,9 +1,9 @@
-//! What is measured: whoever answers rays.
+//! Tracers: implementations that answer rays, which are measured.
 
 use crate::shared::agreement::{Answers, Hit};
 use bvhkit::{Counters, Ray};
 
-/// What is asked of a ray.
+/// A query for a ray.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Query {
     Closest,
@@ -12,7 +12,7 @@ pub enum Query {
     All,
 }
 
-/// How rays are handed over.
+/// The way in which rays are passed on.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Way {
     Single,
@@ -30,11 +30,15 @@ impl Way {
     }
 }
 
-/// Traces a list of rays once, into room of its own that is there already; then tells the answers if it is asked to.
-/// The loop is inside, so that a virtual call is made for each list and none for each ray.
+/// A job that traces a list of rays once, into memory that it already has.
+///
+/// Then it tells the answers, if it is asked to. The loop is inside the job, so that there is a
+/// virtual call for each list and none for each ray.
 pub type Job<'a> = Box<dyn FnMut(Option<&mut Answers>) + Send + 'a>;
 
-/// The job that puts the answers of `trace` in room for one of each ray, whose answer is `none` until then.
+/// Returns a job that stores the answers of `trace`, one for each ray.
+///
+/// Until then each answer is `none`.
 pub fn job<'a, A: Clone + Send + 'a>(
     rays: &'a [Ray],
     none: A,
@@ -50,7 +54,7 @@ pub fn job<'a, A: Clone + Send + 'a>(
     })
 }
 
-/// What `ask` answers to each ray; inlined with it.
+/// Stores the answer of `ask` to each ray. Inlined, together with `ask`.
 #[inline(always)]
 pub fn one_by_one<A>(rays: &[Ray], answers: &mut [A], ask: impl Fn(&Ray) -> A) {
     for (ray, answer) in rays.iter().zip(answers) {
@@ -60,15 +64,15 @@ pub fn one_by_one<A>(rays: &[Ray], answers: &mut [A], ask: impl Fn(&Ray) -> A) {
 
 /// Primitives in a tree.
 pub trait Tracer: Sync {
-    /// None if it has no such query.
+    /// Returns a job for a list of rays, or `None` if there is no such query.
     fn job<'a>(&'a self, query: Query, way: Way, rays: &'a [Ray]) -> Option<Job<'a>>;
 
-    /// All hits of a ray in order; none if it has no such query.
+    /// Returns all hits of a ray in order, or `None` if there is no such query.
     fn all_hits(&self, ray: &Ray) -> Option<Vec<Hit>>;
 
-    /// The steps that the query takes for all the rays together, if it tells.
+    /// Returns the steps of the query for all the rays together, if the tracer counts.
     fn steps(&self, query: Query, rays: &[Ray]) -> Option<Counters>;
 
-    /// Bytes for each primitive, if it tells: of the hierarchy, and with the primitives.
+    /// Returns the bytes for each primitive, if known: of the tree alone, and of all.
     fn bytes(&self) -> Option<[f64; 2]>;
 }

@@ -1,5 +1,7 @@
-//! The default scene, after the Cornell box: a lit room with one red and one green wall. In it
-//! stand the Utah teapot (triangles), a mirror ball and a glass ball (analytic spheres).
+//! The default scene, after the Cornell box.
+//!
+//! It is a lit room with one red and one green wall. In it stand the Utah teapot (triangles), a
+//! mirror ball and a glass ball (analytic spheres).
 //!
 //! The box is Goral et al., "Modeling the Interaction of Light Between Diffuse Surfaces", SIGGRAPH
 //! 1984. This one is 2 wide, 2 high and 2 deep, y up, with its open side towards +z.
@@ -41,7 +43,7 @@ fn add_room(scene: &mut Scene) {
     add_quad(scene, Vec3::new(-0.5, 1.99, -0.45), Vec3::X, 0.9 * Vec3::Z, lamp);
 }
 
-/// A parallelogram whose front is where `u x v` points.
+/// Adds a parallelogram whose front is where `u x v` points.
 fn add_quad(scene: &mut Scene, corner: Vec3, u: Vec3, v: Vec3, material: usize) {
     let [a, b, c, d] = [corner, corner + u, corner + u + v, corner + v];
     scene.add_triangle(&Mat4::IDENTITY, [a, b, c], None, material);

@@ -1,4 +1,6 @@
-//! glTF, binary (.glb) and text (.gltf): triangles, materials, cameras and punctual lights.
+//! glTF, binary (.glb) and text (.gltf).
+//!
+//! It has triangles, materials, cameras and punctual lights.
 
 use std::path::Path;
 
@@ -10,12 +12,12 @@ use glam::{Mat4, Vec3};
 
 use super::{Camera, Light, Material, Scene};
 
-/// Nodes nested deeper than this are refused: a malformed file may have a node contain itself.
+/// Maximum depth of nested nodes: in a malformed file, a node may contain itself.
 const MAX_DEPTH: usize = 64;
 
 pub fn load(path: &Path) -> Result<Scene> {
     let file = ::gltf::Gltf::open(path)?;
-    // Only the buffers: images would be decoded in vain, since no texture is used.
+    // Only the buffers are imported: no texture is used, so images would be decoded in vain.
     let buffers = ::gltf::import_buffers(&file.document, path.parent(), file.blob)?;
     let document = file.document;
 
@@ -98,7 +100,7 @@ impl Loader {
         Ok(())
     }
 
-    /// A spot light becomes a point light: its cone is not modelled.
+    /// Adds a light. A spot light becomes a point light: its cone is not modelled.
     fn add_light(&mut self, light: &::gltf::khr_lights_punctual::Light<'_>, transform: &Mat4) {
         let power = Vec3::from(light.color()) * light.intensity();
         self.scene.lights.push(match light.kind() {
@@ -113,7 +115,9 @@ impl Loader {
     }
 }
 
-/// The nearest of our materials: by emission, then by transmission, then by metalness.
+/// Returns the nearest of our materials.
+///
+/// Emission decides first, then transmission, then metalness.
 fn convert(material: &::gltf::Material<'_>) -> Material {
     let emission = Vec3::from(material.emissive_factor());
     if emission.max_element() > 0.0 && material.emissive_texture().is_none() {

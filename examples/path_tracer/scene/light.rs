@@ -2,15 +2,16 @@
 
 use glam::Vec3;
 
-/// A light that no ray hits; it is sampled directly only.
+/// A light that no ray hits; only direct sampling finds it.
 #[derive(Clone, Copy, Debug)]
 pub enum Light {
-    /// Parallel light, such as the sun's. `irradiance` is what reaches a surface facing it.
+    /// Parallel light, such as the sun's; `irradiance` is that of a surface facing it.
     Directional { direction: Vec3, irradiance: Vec3 },
-    /// Light from a point, of the given power per solid angle.
+    /// Light from a point, with the given power per solid angle.
     Point { position: Vec3, intensity: Vec3 },
-    /// Light from the front of the parallelogram `corner + s * u + t * v`: the side that `u x v`
-    /// points to.
+    /// Light from the front of the parallelogram `corner + s * u + t * v`.
+    ///
+    /// The front is the side that `u x v` points to.
     Rectangle { corner: Vec3, u: Vec3, v: Vec3, radiance: Vec3 },
 }
 
@@ -24,7 +25,7 @@ pub struct Sky {
 }
 
 impl Sky {
-    /// A clear day's sky, whose mean radiance is about 1.
+    /// Returns the sky of a clear day, whose mean radiance is about 1.
     pub fn day(up: Vec3) -> Self {
         Self {
             up,
@@ -34,7 +35,7 @@ impl Sky {
         }
     }
 
-    /// The same sky, `factor` times as bright.
+    /// Returns the same sky, `factor` times as bright.
     pub fn scaled(self, factor: f32) -> Self {
         Self {
             up: self.up,
@@ -44,7 +45,7 @@ impl Sky {
         }
     }
 
-    /// The radiance that arrives along a ray of this direction, a unit vector.
+    /// Returns the radiance that arrives along a ray of this direction, a unit vector.
     pub fn radiance(&self, direction: Vec3) -> Vec3 {
         let height = direction.dot(self.up);
         if height >= 0.0 {

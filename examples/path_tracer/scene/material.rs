@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-/// How a surface answers to light.
+/// The response of a surface to light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Material {
     /// Lambert's ideal diffuse reflection.
@@ -16,7 +16,7 @@ pub enum Material {
 }
 
 impl Material {
-    /// What a surface is made of where the file does not say.
+    /// The material of a surface for which the file names none.
     pub const GREY: Self = Self::Diffuse { albedo: Vec3::splat(0.6) };
 
     pub fn is_emitter(&self) -> bool {

@@ -1,4 +1,6 @@
-//! A scene as the renderer sees it, whatever file it came from: shapes, materials, lights, camera.
+//! A scene as the renderer sees it: shapes, materials, lights and camera.
+//!
+//! It does not depend on the format of the file.
 
 mod camera;
 mod cornell;
@@ -22,29 +24,33 @@ pub use light::{Light, Sky};
 pub use material::Material;
 pub use shape::Shape;
 
-/// Everything there is to render. What a file leaves out ([`camera`](Self::camera), every light)
-/// is chosen later by [`view::complete`], which needs to cast rays.
+/// A scene to render.
+///
+/// If a file leaves out the [`camera`](Self::camera) or every light, [`view::complete`] chooses
+/// them later, because it needs to cast rays.
 #[derive(Default)]
 pub struct Scene {
     pub shapes: Vec<Shape>,
-    /// How each shape is shaded; as long as `shapes` and in the same order.
+    /// The surface of each shape; as long as `shapes` and in the same order.
     pub surfaces: Vec<Surface>,
     pub materials: Vec<Material>,
-    /// The lights that are not shapes. Shapes of an emitting material are lights as well.
+    /// The lights that are not shapes.
+    ///
+    /// Shapes of an emitting material are lights as well.
     pub lights: Vec<Light>,
-    /// What a ray that leaves the scene sees; black if there is none.
+    /// The sky that rays see when they leave the scene; black if there is none.
     pub sky: Option<Sky>,
     pub camera: Option<Camera>,
-    /// The direction that the file calls up, if it says.
+    /// The direction that the file calls up, if it calls any so.
     pub up: Option<Vec3>,
 }
 
-/// How a shape is shaded.
+/// The shading of a shape.
 #[derive(Clone, Copy)]
 pub struct Surface {
     /// An index into [`Scene::materials`].
     pub material: usize,
-    /// The normals at a triangle's vertices, where the file has them.
+    /// The normals at a triangle's vertices, if the file has them.
     pub normals: Option<[Vec3; 3]>,
 }
 
@@ -57,7 +63,7 @@ pub fn load(path: &Path) -> Result<Scene> {
         Some("glb" | "gltf") => gltf::load,
         _ => bail!("{}: not a scene file; known extensions are .dae, .obj, .glb and .gltf", path.display()),
     };
-    // The loaders' own words for a file that cannot be opened differ; ours come first.
+    // Loaders have different words for a file that cannot be opened. These checks come first.
     let kind = std::fs::metadata(path).with_context(|| path.display().to_string())?;
     ensure!(kind.is_file(), "{}: not a file", path.display());
 
@@ -70,13 +76,15 @@ pub fn load(path: &Path) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The scene that needs no file: a Cornell box with the Utah teapot and two spheres.
+/// Returns the scene that needs no file, a Cornell box.
+///
+/// The box holds the Utah teapot and two spheres.
 pub fn cornell_box() -> Scene {
     cornell::scene()
 }
 
 impl Scene {
-    /// The scene's triangles, without its other shapes.
+    /// Returns the scene's triangles, without its other shapes.
     pub fn triangles(&self) -> Vec<Triangle> {
         let triangle = |shape: &Shape| match shape {
             Shape::Triangle(triangle) => Some(*triangle),
@@ -85,12 +93,12 @@ impl Scene {
         self.shapes.iter().filter_map(triangle).collect()
     }
 
-    /// The material of the shape at `index`.
+    /// Returns the material of the shape at `index`.
     pub fn material(&self, index: usize) -> &Material {
         &self.materials[self.surfaces[index].material]
     }
 
-    /// Whether anything at all emits light.
+    /// Returns whether anything at all emits light.
     fn is_lit(&self) -> bool {
         let emits = |surface: &Surface| self.materials[surface.material].is_emitter();
         self.sky.is_some() || !self.lights.is_empty() || self.surfaces.iter().any(emits)
@@ -101,8 +109,10 @@ impl Scene {
         self.materials.len() - 1
     }
 
-    /// Adds a triangle placed by `transform`. A mirroring transform turns a triangle inside out,
-    /// so its vertices are put in the other order to keep the front in front.
+    /// Adds a triangle placed by `transform`.
+    ///
+    /// A mirroring transform turns a triangle inside out. Then its vertices change their order, so
+    /// that the front stays in front.
     fn add_triangle(
         &mut self,
         transform: &Mat4,
@@ -117,7 +127,7 @@ impl Scene {
             }
         }
         let [a, b, c] = points.map(|point| transform.transform_point3(point));
-        // Normals are carried by the inverse transpose, so that they stay across the surface.
+        // The inverse transpose carries normals, so that they stay perpendicular to the surface.
         let normals = normals.map(|normals| {
             let carry = transform.inverse().transpose();
             normals.map(|normal| carry.transform_vector3(normal).normalize_or_zero())
@@ -126,7 +136,9 @@ impl Scene {
         self.surfaces.push(Surface { material, normals });
     }
 
-    /// Adds a sphere about the origin of `transform`, whose scale is taken to be uniform.
+    /// Adds a sphere about the origin of `transform`.
+    ///
+    /// The scale of `transform` is taken to be uniform.
     fn add_sphere(&mut self, transform: &Mat4, radius: f32, material: usize) {
         let center = transform.transform_point3(Vec3::ZERO);
         let scale = transform.determinant().abs().cbrt();

@@ -1,4 +1,4 @@
-//! Wavefront OBJ, with its .mtl where there is one.
+//! Wavefront OBJ, with its .mtl if there is one.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ pub fn load(path: &Path) -> Result<Scene> {
     let (models, materials) = tobj::load_obj(path, &options)?;
     let mut scene = Scene { up: Some(Vec3::Y), ..Default::default() };
 
-    // The file names a .mtl that often does not come with it: then the shapes are grey.
+    // The file names a .mtl, which is often missing. Then the shapes are grey.
     for material in materials.unwrap_or_default() {
         scene.add_material(convert(&material));
     }
@@ -36,13 +36,15 @@ pub fn load(path: &Path) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The three vectors that `indices` name in an array of x, y, z, x, y, z, ...
+/// Returns the vectors that `indices` name in an array of x, y, z, x, y, z, ...
 fn triple(values: &[f32], indices: &[u32]) -> Option<[Vec3; 3]> {
     let vector = |index: u32| Some(Vec3::from_slice(values.get(3 * index as usize..)?.get(..3)?));
     Some([vector(indices[0])?, vector(indices[1])?, vector(indices[2])?])
 }
 
-/// The nearest of our materials, by emission, then by the illumination model `illum`: 3 and 5 are
+/// Returns the nearest of our materials.
+///
+/// Emission decides first, then the illumination model `illum`: 3 and 5 are
 /// mirrors; 4, 6, 7 and 9 are glass.
 fn convert(material: &tobj::Material) -> Material {
     let emission = material.emissive.map(Vec3::from);

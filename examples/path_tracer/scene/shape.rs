@@ -1,4 +1,4 @@
-//! The primitive of the path tracer: a triangle or an analytic sphere, side by side in one tree.
+//! The primitive of the path tracer: a triangle or an analytic sphere, in one tree.
 
 use bvhkit::{
     Aabb, Barycentrics, Corners, Intersect, OneByOne, Primitive, Ray, Sphere, SurfacePoint, Triangle,
@@ -24,7 +24,7 @@ impl Primitive for Shape {
 }
 
 impl Intersect for Shape {
-    /// Where on a triangle; a sphere needs no more than the distance.
+    /// The position on a triangle. A sphere needs no more than t.
     type Payload = Option<Barycentrics>;
     /// Triangles and spheres have no operands in common.
     type Leaf = OneByOne;
@@ -44,7 +44,7 @@ impl Intersect for Shape {
 }
 
 impl Shape {
-    /// Where a ray hits, from where others may start.
+    /// Returns the point where a ray hits, from which other rays may start.
     pub fn surface_point(&self, ray: &Ray, t: f32, at: Option<Barycentrics>) -> SurfacePoint {
         match self {
             Self::Triangle(triangle) => triangle.surface_point(at.unwrap_or_default()),
@@ -52,8 +52,10 @@ impl Shape {
         }
     }
 
-    /// The geometric normal at `point` on the surface, a unit vector: outward for a sphere, the
-    /// side of counterclockwise vertices for a triangle.
+    /// Returns the geometric normal at `point` on the surface, a unit vector.
+    ///
+    /// It points outward from a sphere, and to the side of
+    /// counterclockwise vertices from a triangle.
     pub fn normal(&self, point: Vec3) -> Vec3 {
         match self {
             Self::Triangle(triangle) => edges_cross(triangle).normalize_or(Vec3::Y),
@@ -61,7 +63,7 @@ impl Shape {
         }
     }
 
-    /// Whether all its numbers are finite.
+    /// Returns whether all numbers of the shape are finite.
     pub fn is_finite(&self) -> bool {
         let finite = |point: [f32; 3]| Vec3::from(point).is_finite();
         match self {

@@ -1,19 +1,23 @@
 //! The Utah teapot, from its published bicubic Bezier patches.
 //!
-//! Martin Newell measured it in 1975 and published 28 patches; the bottom's four were added later,
-//! by Frank Crow ("The Origins of the Teapot", IEEE Computer Graphics and Applications 7(1), 1987,
-//! which also prints the data). The control points below are in its units, z up: the teapot stands
-//! on z = 0 and is 3.15 high. The data's symmetry is used to keep it short: 24 of the patches turn
-//! a profile around the z axis, the other 8 are four patches and their mirror images.
+//! Martin Newell measured it in 1975 and published 28 patches. Frank Crow added the four of
+//! the bottom ("The Origins of the Teapot", IEEE Computer Graphics and Applications 7(1),
+//! 1987, which also prints the data).
+//!
+//! The control points below are in the published units, z up: the teapot stands on z = 0 and is
+//! 3.15 high. The symmetry of the data keeps it short: 24 of the patches turn a profile around the
+//! z axis, the other 8 are four patches and their mirror images.
 
 use glam::Vec3;
 
 /// One bicubic patch: control points in rows of four.
 pub type Patch = [Vec3; 16];
 
-/// The profiles that are turned around the axis: (radius, tangent, height) for four control
-/// points. A quarter of a turn has the control points (r, 0), (r, -k), (k, -r), (0, -r), where the
-/// tangent k brings the cubic close to a circle.
+/// The profiles that are turned around the axis.
+///
+/// A profile has (radius, tangent, height) for four control points. A quarter of a
+/// turn has the control points (r, 0), (r, -k), (k, -r), (0, -r), where the tangent k
+/// brings the cubic close to a circle.
 #[rustfmt::skip]
 const PROFILES: [[(f32, f32, f32); 4]; 6] = [
     // Rim.
@@ -28,8 +32,9 @@ const PROFILES: [[(f32, f32, f32); 4]; 6] = [
     [(1.5, 0.84, 0.15), (1.5, 0.84, 0.075), (1.425, 0.798, 0.0), (0.0, 0.0, 0.0)],
 ];
 
-/// Handle and spout: the half with y <= 0, two patches each. Rows run along the tube; within a row,
-/// the first and the last point lie in the plane of symmetry.
+/// The halves of handle and spout with y <= 0, two patches each.
+///
+/// Rows run along the tube. In a row, the first and the last point are in the plane of symmetry.
 #[rustfmt::skip]
 const HALVES: [[[f32; 3]; 16]; 4] = [
     // Handle, upper part.
@@ -116,8 +121,10 @@ pub struct Facet {
     pub normals: [Vec3; 3],
 }
 
-/// The teapot as triangles: every patch becomes `n` by `n` quads, halved. Where a patch shrinks to
-/// a point (top and bottom) a quad is a single triangle.
+/// Returns the teapot as triangles.
+///
+/// Every patch becomes `n` by `n` quads, each cut into two triangles. Where a patch shrinks to a
+/// point (top and bottom), a quad is a single triangle.
 pub fn tessellate(n: usize) -> Vec<Facet> {
     let mut facets = Vec::new();
     for patch in patches() {
@@ -140,7 +147,7 @@ pub fn tessellate(n: usize) -> Vec<Facet> {
     facets
 }
 
-/// The 32 patches, each with its outside where d/dv x d/du points.
+/// Returns the 32 patches, each with its outside where d/dv x d/du points.
 fn patches() -> Vec<Patch> {
     let mut patches = Vec::with_capacity(32);
     for profile in PROFILES {
@@ -158,7 +165,7 @@ fn patches() -> Vec<Patch> {
         let half = half.map(Vec3::from);
         let mirrored = half.map(|p| Vec3::new(p.x, -p.y, p.z));
         patches.push(half);
-        // A mirror image is inside out; reversing its rows' points turns it right.
+        // A mirror image is inside out. The reversed order of points in its rows turns it right.
         patches.push(std::array::from_fn(|i| mirrored[i / 4 * 4 + 3 - i % 4]));
     }
     patches
@@ -168,8 +175,10 @@ fn point(patch: &Patch, u: f32, v: f32) -> Vec3 {
     combine(patch, bernstein(u), bernstein(v))
 }
 
-/// The unit normal. Where the patch shrinks to a point its derivative vanishes, and the normal is
-/// taken a little further inside.
+/// Returns the unit normal.
+///
+/// Where the patch shrinks to a point, its derivative vanishes. There the normal is that of a
+/// point a little further inside.
 fn normal(patch: &Patch, u: f32, v: f32) -> Vec3 {
     let across = |u: f32, v: f32| {
         let du = combine(patch, bernstein_derivative(u), bernstein(v));
@@ -210,8 +219,10 @@ mod tests {
         assert!((max - Vec3::new(3.434, 2.0, 3.15)).abs().max_element() < 0.01, "{max}");
     }
 
-    /// Neighbouring patches share their edges bit for bit. What stays open is what the published
-    /// teapot leaves open: lid and body do not touch, handle and spout only pierce the body.
+    /// Neighbouring patches share their edges bit for bit.
+    ///
+    /// The only open edges are those of the published teapot: lid and body do not touch, and handle
+    /// and spout only pierce the body.
     #[test]
     fn only_the_published_gaps_are_open() {
         let n = 6;

@@ -10,16 +10,16 @@ use alloc::vec::Vec;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// A triangle that lies in its box with all of its area, whatever the mode adds to it.
+/// A triangle whose box contains its whole area, without a mode's padding.
 type Plain = Fast<Triangle>;
 
-/// Numbers in [0, 1), the same each time.
+/// Returns a source of numbers in [0, 1), the same each time.
 fn random() -> impl FnMut() -> f32 {
     let mut rng = Pcg64Mcg::seed_from_u64(3);
     move || rng.random()
 }
 
-/// In the unit cube, a tenth of them large.
+/// Returns triangles in the unit cube, a tenth of them large.
 fn soup(n: usize) -> Vec<Plain> {
     let mut random = random();
     let mut point = move || [0.0; 3].map(|_: f32| random());
@@ -35,7 +35,7 @@ fn soup(n: usize) -> Vec<Plain> {
     (0..n).map(triangle).collect()
 }
 
-/// In a row, with gaps in between.
+/// Returns triangles in a row, with gaps in between.
 fn row(n: usize) -> Vec<Plain> {
     let triangle = |i: usize| {
         let x = i as f32;
@@ -51,12 +51,14 @@ fn area([a, b, c]: [[f32; 3]; 3]) -> f64 {
     0.5 * normal.map(|x| x * x).iter().sum::<f64>().sqrt()
 }
 
-/// What part of a triangle lies in a box, told by points all over it: the centers of equal parts.
+/// Returns the share of a triangle's area that is inside a box.
+///
+/// It is estimated by points all over the triangle: the centers of equal parts.
 fn share([a, b, c]: [[f32; 3]; 3], within: &Aabb) -> f64 {
     const ROWS: usize = 120;
     let is_inside = |&(i, j): &(usize, usize)| {
         let [u, v] = [i, j].map(|row| (row as f32 + 1.0 / 3.0) / ROWS as f32);
-        // Of a parallelogram's points, those of the other half are turned into this one.
+        // The points form a parallelogram: those in its other half are turned into the triangle.
         let (u, v) = if i + j < ROWS { (u, v) } else { (1.0 - u, 1.0 - v) };
         let point = [0, 1, 2].map(|k| a[k] * (1.0 - u - v) + b[k] * u + c[k] * v);
         within.contains(&Aabb::of_points([point]))
@@ -65,7 +67,9 @@ fn share([a, b, c]: [[f32; 3]; 3], within: &Aabb) -> f64 {
     points.filter(is_inside).count() as f64 / (ROWS * ROWS) as f64
 }
 
-/// The sum over a node and all below, of each triangle that is not below by itself; and what is below.
+/// Returns the sum over a node and all below it, and the primitives below it.
+///
+/// The area of each triangle that is not below a node is estimated by itself.
 fn by_points<H: Outline<f32>>(
     hierarchy: &H,
     place: H::Place,
@@ -107,11 +111,12 @@ fn points_on_triangles_tell_the_same_in_any_layout() {
     agrees(Bvh::builder().heuristic(Median).layout::<CompactTree>());
 }
 
-/// Two triangles in a plane, each in a half of the other's box.
+/// Two triangles in a plane, whose boxes overlap by half.
 #[test]
 fn a_small_tree_has_the_value_computed_by_hand() {
     let low = |x: f32| Fast(Triangle::new([x, 0.0, 0.0], [x + 4.0, 0.0, 0.0], [x, 4.0, 0.0]));
-    // Of area 8 each, in boxes with x in [0, 4] and [2, 6]: the left one has 2 in the right box, the right one 6 in the left.
+    // The triangles have an area of 8 each, in boxes with x in [0, 4] and [2, 6]. The left one has
+    // 2 in the right box, the right one 6 in the left box.
     let bvh = Bvh::builder()
         .heuristic(Median)
         .max_leaf_size(1)
@@ -120,7 +125,7 @@ fn a_small_tree_has_the_value_computed_by_hand() {
         .unwrap();
     assert_eq!(bvh.report().leaves, 2);
     assert_eq!(bvh.epo(), (2.0 + 6.0) / 16.0);
-    // In one leaf neither is beside the other's box.
+    // In one leaf, both triangles are below the only box.
     let bvh = Bvh::builder()
         .heuristic(Median)
         .layout::<Tree>()
@@ -137,7 +142,7 @@ fn a_tree_whose_boxes_do_not_overlap_has_none() {
     assert_eq!(builder().build(row(100)).unwrap().epo(), 0.0);
 }
 
-/// Slabs across one axis, until there are few triangles left.
+/// Splits across one axis, until few triangles are left.
 struct Slabs;
 
 impl Heuristic<f32> for Slabs {
@@ -210,7 +215,7 @@ fn what_has_no_area_or_was_skipped_counts_for_nothing() {
     assert_eq!((bvh.skipped(), bvh.epo()), (&[500, 501][..], expected));
 }
 
-/// Every mode has corners, and a mode's padding hardly counts.
+/// Every mode has corners, and the padding of a mode hardly counts.
 #[test]
 fn modes_differ_little() {
     fn epo<P: Intersect<Scalar = f32> + Corners<Scalar = f32>>(mode: fn(Triangle) -> P) -> f64 {

@@ -1,10 +1,10 @@
-//! Cells in a box, as many on each axis.
+//! Cells in a box, the same number on each axis.
 
 use crate::geometry::Scalar;
 use crate::simd::Lanes;
 use crate::simd::{Isa, KernelLanes};
 
-/// Where cells lie, a lane for each axis.
+/// A grid of cells, with a lane for each axis.
 #[derive(Clone, Copy)]
 pub(super) struct Grid<S: Scalar, I: Isa> {
     origin: S::Times4<I>,
@@ -16,7 +16,10 @@ pub(super) struct Grid<S: Scalar, I: Isa> {
 }
 
 impl<S: Scalar, I: Isa> Grid<S, I> {
-    /// `count` cells on each axis of a box, from 1 to 2^16, that begins at an origin; see `Aabb::per_unit`.
+    /// Makes a grid of `count` cells on each axis, from 1 to 2^16.
+    ///
+    /// The first three numbers are the origin of the box, the others the cells per unit of length;
+    /// see `Aabb::per_unit`.
     #[inline(always)]
     pub fn new(isa: I, [x, y, z]: [S; 3], [a, b, c]: [S; 3], count: usize) -> Self {
         let four = [[x, y, z, S::ZERO], [a, b, c, S::ZERO]];
@@ -26,10 +29,12 @@ impl<S: Scalar, I: Isa> Grid<S, I> {
         Self { origin, scale, half: splat(S::HALF), zero: splat(S::ZERO), last }
     }
 
-    /// The cell of the middle of a box with these corners, on each axis.
+    /// Returns the cell of the middle of a box, on each axis.
+    ///
+    /// `min` and `max` are the corners of the box.
     #[inline(always)]
     pub fn cells(&self, min: S::Times4<I>, max: S::Times4<I>) -> [i32; 3] {
-        // As `Aabb::center` rounds; and in this order a NaN becomes zero.
+        // Rounded as in `Aabb::center`. In this order of operations, NaN becomes zero.
         let middle = min * self.half + max * self.half;
         ((middle - self.origin) * self.scale).max(self.zero).min(self.last).to_integers()
     }
@@ -41,7 +46,7 @@ mod tests {
     use crate::InstructionSet;
     use crate::simd::{Backend, Kernel};
 
-    /// The cell of a point, among so many of a box of length 1 on each axis.
+    /// The cell of a point, among cells of a box with length 1 on each axis.
     struct Cell<S>([S; 3], usize);
 
     impl<S: Scalar> Kernel for Cell<S> {
@@ -57,7 +62,7 @@ mod tests {
         }
     }
 
-    /// Cells of points, with every instruction set.
+    /// Checks the cells of points, with every instruction set.
     fn check<S: Scalar>() {
         for backend in InstructionSet::available().filter_map(Backend::of) {
             let cells = |point: [f64; 3], count| backend.run(Cell(point.map(S::from_f64), count));

@@ -5,26 +5,31 @@ use super::{BuildNode, Heuristic, Own, Proposal, SahCost, Split};
 use crate::geometry::Scalar;
 use crate::simd::Backend;
 
-/// The cheapest of `bins - 1` equally spaced planes on each axis, by the surface area heuristic
-/// (Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007).
+/// The surface area heuristic on equally spaced planes.
 ///
-/// Centroids are counted into bins over the node's box, each bin with the box around its
-/// primitives; a sweep over the bins then finds the best plane between two. If all centroids fall
-/// into one bin, bins over the box around the centroids are tried instead.
+/// The cheapest of `bins - 1` planes on each axis is chosen (Wald, On fast Construction of
+/// SAH-based Bounding Volume Hierarchies, 2007).
 ///
-/// The builder asks on which side of the plane a reference was counted, and knows the boxes of both sides: a build takes a tenth
-/// longer if a heuristic of one's own passes on what this one's `split` answers, and what lies within a rounding of a plane may
-/// go to the other side of it.
+/// Centroids are counted into bins over the node's box, and each bin has the box around its
+/// primitives. A sweep over the bins finds the best plane between two bins. If all centroids are in
+/// one bin, the bins span the box around the centroids instead.
 ///
-/// Wald's bins span the box around the centroids in the first place. Spanning the node's box puts
-/// planes where the scene has its walls: with 16 bins a diffuse ray visits 50 nodes of Crytek's
-/// Sponza instead of 68, a primary ray 41 instead of 56; other scenes change by 3 % either way.
-/// Choosing by axis, the centroids' box wherever it is less than an eighth to a half of the node's,
-/// loses all of the gain (71 nodes). Counting only 4,096 to 16,384 references of larger nodes saves 4 to 10 % of the
-/// build and costs up to 40 % of a ray set's speed (sponza's shadow rays) where it meets a worse plane near the root.
+/// The builder also gets the boxes of both sides, and the side on which each reference was counted.
+/// A heuristic of your own that returns the result of this one's `split` does not pass these on.
+/// Then a build takes a tenth longer, and a reference within a rounding error of the plane may go
+/// to the other side.
+///
+/// Wald's bins span the box around the centroids from the start. Bins over the node's box put
+/// planes where the scene has its walls: rays visit fewer nodes in interiors, and other scenes
+/// hardly change (measured: docs/decisions.md, 17). Refused: the centroids' box on the axes
+/// where it is much smaller than the node's box, which loses all of the gain. Refused: to count
+/// only a sample of the references in large nodes, which saves some time and may choose a worse
+/// plane near the root (measured: docs/decisions.md, 18).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BinnedSah {
-    /// Bins on each axis, 2 to [`MAX_BINS`](Self::MAX_BINS); values outside are clamped.
+    /// Number of bins on each axis, 2 to [`MAX_BINS`](Self::MAX_BINS).
+    ///
+    /// Values outside are clamped.
     pub bins: usize,
     /// The costs of a step and of a test.
     pub cost: SahCost,
@@ -34,14 +39,14 @@ impl BinnedSah {
     /// The largest number of bins.
     pub const MAX_BINS: usize = 32;
 
-    /// With `bins` bins and the default costs.
+    /// Makes a heuristic with `bins` bins and the default costs.
     pub fn new(bins: usize) -> Self {
         Self { bins, cost: SahCost::default() }
     }
 }
 
 impl Default for BinnedSah {
-    /// 16 bins and the default costs.
+    /// Returns a heuristic with 16 bins and the default costs.
     fn default() -> Self {
         Self::new(16)
     }
@@ -67,10 +72,11 @@ impl BinnedSah {
         })
     }
 
-    /// The cheapest plane; none if all centroids are one point.
+    /// Returns the cheapest plane; `None` if no plane separates the centroids.
     pub(super) fn plane<S: Scalar>(&self, node: &BuildNode<'_, S>) -> Option<Plane<S>> {
-        // Bins are cleared and swept for every node: no more of them than pay. Half of them for few references cost
-        // less than 1 % of the rays that they save a tenth of the build.
+        // Bins are cleared and swept for every node, so there are no more bins than pay. Half the
+        // bins for few references save a tenth of the build, and cost rays hardly anything
+        // (measured: docs/decisions.md, 19).
         let bins = self.bins.clamp(2, Self::MAX_BINS);
         let is_small = node.references.len() <= 2 * bins;
         match if is_small { bins.div_ceil(2).max(2) } else { bins } {
@@ -82,7 +88,7 @@ impl BinnedSah {
 
     fn plane_of<S: Scalar, const N: usize>(node: &BuildNode<'_, S>, count: usize) -> Option<Plane<S>> {
         let (references, area_scale) = (node.references, node.aabb.area_scale());
-        // One call, wherever the bins are.
+        // A loop, so that there is one call for both spans.
         let mut span = node.aabb;
         for is_last in [false, true] {
             let bins = Bins::<S, N> { references, span: &span, count, area_scale };
@@ -125,7 +131,7 @@ mod tests {
             .collect()
     }
 
-    /// More boxes than are swept, `step` apart.
+    /// Twelve unit boxes, `step` apart.
     fn row(step: f32) -> Vec<PrimRef> {
         unit_boxes(&(0..12u8).map(|i| f32::from(i) * step).collect::<Vec<_>>())
     }

@@ -1,4 +1,4 @@
-//! Counting references into bins, and the cheapest plane between two bins.
+//! Bins that count references, and the cheapest plane between two bins.
 
 use super::Split;
 use super::bin_grid::Grid;
@@ -8,18 +8,20 @@ use crate::geometry::{Aabb, Axis, Scalar};
 use crate::simd::{Halves, Kernel, Lanes, prefetch_ahead};
 use crate::simd::{Isa, KernelLanes};
 
-/// The search for the cheapest plane between `N` bins on each axis, of which `count` are in use.
+/// The search for the cheapest plane between bins.
+///
+/// There are `N` bins on each axis, of which `count` are in use.
 #[derive(Clone, Copy)]
 pub(super) struct Bins<'r, S, const N: usize> {
     pub references: &'r [PrimRef<S>],
-    /// What the bins divide.
+    /// The box that the bins divide.
     pub span: &'r Aabb<S>,
     pub count: usize,
-    /// As for [`Aabb::scaled_half_area`].
+    /// The scale for [`Aabb::scaled_half_area`].
     pub area_scale: S,
 }
 
-/// A plane, and the sum of the sides' areas times their counts.
+/// A plane, and the sum of its sides' areas times their counts.
 pub(super) struct Plane<S> {
     pub weighted_area: S,
     pub proposal: Proposal<S>,
@@ -27,20 +29,22 @@ pub(super) struct Plane<S> {
     pub overlap: S,
 }
 
-/// Rows of bins are computed with in parts of so many lanes.
+/// Number of bins that are computed at once.
 const LANES: usize = 8;
 
-/// Boxes and numbers of references, by axis and bin. A box is one vector, its minimum negated: so one maximum joins two.
+/// Boxes and counts of references, by axis and bin.
+///
+/// A box is one vector with its minimum negated, so that one maximum joins two boxes.
 struct Filled<S: Scalar, I: Isa, const N: usize> {
     boxes: [[S::Times8<I>; N]; 3],
     counts: [[i32; N]; 3],
 }
 
 impl<S: Scalar, const N: usize> Kernel for Bins<'_, S, N> {
-    /// More bins are rarely asked for.
+    /// More bins are rarely used.
     const IS_WIDE: bool = N <= 16;
     const USES_AVX512: bool = false;
-    /// None if all centroids are in one bin.
+    /// `None` if all centroids are in one bin.
     type Output = Option<Plane<S>>;
 
     #[inline(always)]
@@ -72,12 +76,12 @@ impl<S: Scalar, const N: usize> Bins<'_, S, N> {
             }
             return filled;
         }
-        // The next reference's bin is often the last one's, which is still on its way to memory: two of each, in turns,
-        // save a twentieth of the build.
+        // The bin of a reference is often that of the reference before, whose store is still on its
+        // way to memory. Two sets of bins, used in turn, save a twentieth of the build.
         let mut others = Filled::<S, I, N>::empty(isa);
         let (pairs, rest) = self.references.as_chunks::<2>();
         for [first, second] in pairs {
-            // Two lie in a line.
+            // Two references of `f32` share a cache line.
             prefetch_ahead(first);
             filled.count(isa, &grid, first);
             others.count(isa, &grid, second);
@@ -93,7 +97,7 @@ impl<S: Scalar, const N: usize> Bins<'_, S, N> {
         filled
     }
 
-    /// For each bin, the cost of a plane before it; NaN where a side is empty.
+    /// Returns the cost of a plane before each bin; NaN where a side is empty.
     #[inline(always)]
     fn costs<I: Isa>(&self, isa: I, filled: &Filled<S, I, N>, axis: usize) -> [S; N] {
         let (boxes, counts) = (&filled.boxes[axis], &filled.counts[axis]);
@@ -127,7 +131,7 @@ impl<S: Scalar, I: Isa, const N: usize> Filled<S, I, N> {
         Self { boxes: [[S::Times8::splat(isa, S::NEG_INFINITY); N]; 3], counts: [[0; N]; 3] }
     }
 
-    /// The boxes before a bin, and those from it on.
+    /// Returns the boxes of the bins before `border`, and of those from it on.
     #[inline(always)]
     fn sides(&self, isa: I, axis: usize, border: usize) -> [S::Times8<I>; 2] {
         let nothing = S::Times8::splat(isa, S::NEG_INFINITY);
@@ -157,14 +161,14 @@ impl<S: Scalar, I: Isa, const N: usize> Filled<S, I, N> {
     }
 }
 
-/// A box whose minimum is negated.
+/// Converts a vector whose minimum is negated to a box.
 #[inline(always)]
 fn to_box<S: Scalar, I: Isa>(isa: I, aabb: S::Times8<I>) -> Aabb<S> {
     let [negated_min, max] = aabb.to_halves();
     Aabb { min: three(S::Times4::splat(isa, S::ZERO) - negated_min), max: three(max) }
 }
 
-/// All on one side of each plane: the box's extents and the number of references.
+/// One side of each plane: the extents of its box, and its number of references.
 struct Side<S, const N: usize> {
     extents: [[S; N]; 3],
     counts: [S; N],
@@ -183,7 +187,9 @@ impl<S: Scalar, const N: usize> Side<S, N> {
         self.counts[bin] = S::from_count(count);
     }
 
-    /// Of eight bins. Of nothing at all it is NaN, infinity times zero.
+    /// Returns the areas times counts of this side, for eight planes.
+    ///
+    /// An empty side has NaN: infinity times zero.
     #[inline(always)]
     fn costs<I: Isa>(&self, isa: I, first: usize, scale: S::Times8<I>) -> S::Times8<I> {
         let [x, y, z] = &self.extents;
@@ -194,13 +200,15 @@ impl<S: Scalar, const N: usize> Side<S, N> {
     }
 }
 
-/// A part of a row.
+/// Loads eight values of a row.
 #[inline(always)]
 fn eight<S: Scalar, I: Isa, const N: usize>(isa: I, row: &[S; N], first: usize) -> S::Times8<I> {
     S::Times8::from_slice(isa, &row[first..first + LANES])
 }
 
-/// Where the least number is, the first of equals, and the number; none if there is none.
+/// Returns the axis, the bin and the value of the least cost, if there is one.
+///
+/// Of equal costs, the first is taken.
 #[inline(always)]
 fn least<S: Scalar, I: Isa, const N: usize>(isa: I, costs: &[[S; N]; 3]) -> Option<(usize, usize, S)> {
     let mut smallest = S::Times8::splat(isa, S::INFINITY);
@@ -211,7 +219,7 @@ fn least<S: Scalar, I: Isa, const N: usize>(isa: I, costs: &[[S; N]; 3]) -> Opti
     }
     let smallest =
         (0..LANES).fold(S::INFINITY, |least, lane| crate::geometry::min(smallest.lane(lane), least));
-    // No cost is NaN here: the minimum has left those out.
+    // The least cost is no NaN: the minimum leaves NaN out.
     if smallest == S::INFINITY {
         return None;
     }

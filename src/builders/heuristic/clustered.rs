@@ -4,21 +4,29 @@ use super::{BuildNode, Heuristic, Own, Proposal, Split};
 use crate::builders::Optimise;
 use crate::geometry::Scalar;
 
-/// Splits clusters of neighbours along [`Morton`](super::Morton)'s curve as `heuristic` would split primitives, and leaves what
-/// is inside of them to the curve: the wide layouts make a node of leaves of each, cut where that is cheapest.
+/// Splits clusters of neighbours along the curve of [`Morton`](super::Morton).
 ///
-/// A cluster is as many neighbours as one subtree of the curve's tree holds, up to `size`, and
-/// either small itself or of primitives about as large as one another: so what is large among small ones is split by itself.
+/// `heuristic` splits clusters as it would split primitives, and the curve settles the inside
+/// of each cluster. The wide layouts make a node of leaves of each cluster, divided where
+/// that is cheapest.
 ///
-/// With clusters of up to 128 below [`BinnedSah`](super::BinnedSah) rays visit 17 % more nodes and leaves than with
-/// [`Quality::Balanced`](crate::Quality), in the mean over six scenes (10 to 33 %), in [`Morton`](super::Morton)'s tree with
-/// reinsertion, which takes longer to build, 20 % more (5 to 36 %).
+/// A cluster has as many neighbours as one subtree of the curve's tree, up to `size`. It is
+/// small itself, or its primitives have similar areas. So a large primitive among small ones is
+/// split by itself.
+///
+/// With clusters of up to 128 below [`BinnedSah`](super::BinnedSah), rays visit 17 % more nodes and
+/// leaves than with [`Quality::Balanced`](crate::Quality), in the mean over six scenes.
+/// [`Morton`](super::Morton)'s tree with reinsertion takes longer to build, and rays visit more
+/// (measured: docs/decisions.md, 16).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clustered<H> {
-    /// The most primitives in a cluster; 1 for none. Unless a leaf size is set, no more than a node's leaves hold:
-    /// 128 in the default layout, where each holds up to 8. Else no more than 4,096.
+    /// Maximum number of primitives in a cluster; 1 for no clusters.
+    ///
+    /// If no leaf size is set, a cluster has no more primitives than the leaves of one node hold:
+    /// 128 in the default layout, where each leaf holds up to 8. If a leaf size is set, or in the
+    /// binary [`Tree`](crate::Tree), it has no more than 4,096.
     pub size: usize,
-    /// What splits them.
+    /// The heuristic that splits the clusters.
     pub heuristic: H,
 }
 

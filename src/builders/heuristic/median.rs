@@ -3,10 +3,10 @@
 use super::{BuildNode, Heuristic, Split};
 use crate::geometry::Scalar;
 
-/// Splits the longest axis of the node's box so that both sides have equally many primitives.
+/// Splits the longest axis of the node's box in equal halves by number.
 ///
-/// The quickest to explain and the most even in depth (ceil(log2(n / leaf size))); blind to empty
-/// space, so rays visit many nodes.
+/// Both sides have equally many primitives. It is the simplest heuristic to explain, and the most
+/// even in depth (ceil(log2(n / leaf size))). It is blind to empty space, so rays visit many nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Median;
 

@@ -5,8 +5,8 @@ use crate::geometry::Scalar;
 
 /// Splits the longest axis of the box around the centroids in its middle.
 ///
-/// The middle of the centroids' box, not of the node's: unless all centroids are one point (or
-/// adjacent numbers), there is one on either side, so no side is ever empty.
+/// The box is that of the centroids, not of the node: unless all centroids are one point, or
+/// adjacent numbers, there is a centroid on either side, so no side is empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Midpoint;
 

@@ -1,14 +1,14 @@
-//! Where to split a node: the seam for one's own ideas, and the classic ones.
+//! Split heuristics: the interface for your own, and the classic ones.
 //!
 //! | heuristic | splits | paper |
 //! |---|---|---|
 //! | [`Median`] | longest axis, equal halves | Kay and Kajiya 1986 |
 //! | [`Midpoint`] | longest axis, equal lengths | |
 //! | [`BinnedSah`] | the cheapest of some planes by the surface area heuristic | Wald 2007 |
-//! | [`SweepSah`] | the cheapest of all splits by the same | MacDonald and Booth 1990 |
-//! | [`SpatialSah`] | those of [`BinnedSah`], or a plane that cuts references in two | Stich et al. 2009 |
-//! | [`Morton`] | where the highest bit changes along a space-filling curve | Lauterbach et al. 2009 |
-//! | [`Clustered`] | as another one, down to clusters of neighbours along that curve | |
+//! | [`SweepSah`] | the cheapest of all splits by the same heuristic | MacDonald and Booth 1990 |
+//! | [`SpatialSah`] | as [`BinnedSah`], or a plane that cuts references | Stich et al. 2009 |
+//! | [`Morton`] | at the highest changing bit along the Morton curve | Lauterbach et al. 2009 |
+//! | [`Clustered`] | as another heuristic, down to clusters of neighbours along that curve | |
 
 mod bin_grid;
 mod binned_sah;
@@ -40,13 +40,14 @@ use alloc::vec::Vec;
 
 /// Decides how a node is split: one pure function.
 ///
-/// What it proposes is only a proposal. The driver splits in equal halves instead where a side would
-/// be empty, where the depth bound ([`MAX_DEPTH`](crate::MAX_DEPTH)) would be broken, or where a leaf
+/// The split is only a proposal. The driver splits into equal halves instead where a side would be
+/// empty, where the depth bound ([`MAX_DEPTH`](crate::MAX_DEPTH)) would be broken, or where a leaf
 /// is proposed for more than [`max_leaf_size`](BuildNode::max_leaf_size) primitives. So a bad
 /// heuristic makes a slow tree, never a broken one.
 ///
-/// Called from several threads at once, and by reference: builders are compiled once, in this
-/// crate, whatever the heuristic. `&dyn Heuristic<f32>` is one too, for a choice at run time.
+/// Several threads call a heuristic at once. Builders take it by reference: they are compiled
+/// once, in this crate, for all heuristics. `&dyn Heuristic<f32>` is a heuristic too, for a
+/// choice at run time.
 ///
 /// ```
 /// use bvhkit::heuristic::{BuildNode, Heuristic, Split};
@@ -66,7 +67,8 @@ use alloc::vec::Vec;
 ///     }
 /// }
 ///
-/// let spheres: Vec<Sphere> = (0..50).map(|i| Sphere::new([(i * i) as f32, 0.0, 0.0], 0.5)).collect();
+/// let spheres: Vec<Sphere> =
+///     (0..50).map(|i| Sphere::new([(i * i) as f32, 0.0, 0.0], 0.5)).collect();
 /// let bvh = Bvh::builder().heuristic(Mean).max_leaf_size(2).build(&spheres)?;
 /// assert!(bvh.any_hit(&Ray::new([49.0, -9.0, 0.0], [0.0, 1.0, 0.0])));
 /// println!("{}", bvh.report());
@@ -76,31 +78,42 @@ pub trait Heuristic<S: Scalar>: Sync {
     /// Proposes how to split `node`, which has at least two references.
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S>;
 
-    /// The same, with what this crate's own heuristics know beside.
+    /// Proposes a split, with its sides if the heuristic knows them.
+    ///
+    /// Only the heuristics of this crate know the sides.
     #[doc(hidden)]
     fn proposal(&self, node: &BuildNode<'_, S>, _: Own) -> Proposal<S> {
         self.split(node).into()
     }
 
-    /// Instead of splits: a code for each reference, its place along a curve through `scene`, the box around
-    /// everything. References are sorted by their codes, equal ones as in the input, and each node is split where
-    /// the highest bit changes, in one pass from the leaves up (Lauterbach et al. 2009; Apetrei 2014). As many codes as
-    /// references, or they do not count. See [`Morton`].
+    /// Returns a code for each reference, in place of splits; `None` by default.
+    ///
+    /// A code is a place along a curve through `scene`, the box around the whole scene. References
+    /// are sorted by their codes, equal codes in the order of the input. Each node is split where
+    /// the highest bit changes, in one pass from the leaves up (Lauterbach et al. 2009; Apetrei
+    /// 2014). The codes are ignored if there are not as many as references. See [`Morton`].
     fn codes(&self, _references: &[PrimRef<S>], _scene: &Aabb<S>) -> Option<Vec<u64>> {
         None
     }
 
-    /// How many neighbours are split as one, at the most: 1 for none. See [`Clustered`].
+    /// Returns the maximum number of neighbours that are split as one.
+    ///
+    /// 1, the default, means no clusters. See [`Clustered`].
     fn cluster_size(&self) -> usize {
         1
     }
 
-    /// What follows the build, unless [`Builder::optimise`](crate::Builder::optimise) says otherwise: nothing.
+    /// Returns the optimisation that follows the build; `None` by default.
+    ///
+    /// [`Builder::optimise`](crate::Builder::optimise) overrides it.
     fn optimise(&self) -> Option<Optimise> {
         None
     }
 
-    /// How many more references than primitives there may be, by [`Split::Spatial`]: memory for them is asked for at once.
+    /// Returns the maximum number of extra references, 0 by default.
+    ///
+    /// [`Split::Spatial`] makes them: there may be more references than primitives, by this number.
+    /// The build asks for their memory at once.
     fn extra_references(&self, _primitives: usize) -> usize {
         0
     }
@@ -135,57 +148,70 @@ impl<S: Scalar, H: Heuristic<S> + ?Sized> Heuristic<S> for &H {
 /// A node to be split, as a heuristic sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct BuildNode<'a, S = f32> {
-    /// The box around its primitives.
+    /// The box around the node's references.
     pub aabb: Aabb<S>,
-    /// Its primitives, at least two, in no particular order. Of one that was cut, its part; or, in a build of
-    /// [clusters](Heuristic::cluster_size), clusters, whose indices are numbers of their own.
+    /// The node's references, at least two, in no particular order.
+    ///
+    /// If a primitive was cut, its reference has a part of its box. In a build of
+    /// [clusters](Heuristic::cluster_size) the references are clusters, and their indices are the
+    /// numbers of the clusters.
     pub references: &'a [PrimRef<S>],
-    /// Its depth; the root has 0.
+    /// The node's depth; the root has 0.
     pub depth: usize,
     /// The largest number of references for which [`Split::Leaf`] is accepted.
     pub max_leaf_size: usize,
-    /// How many references a leaf tests at once: 8 where primitives are packed side by side, else 1.
+    /// The number of references that a leaf tests at once.
+    ///
+    /// 8 in packed leaves, where primitives are side by side; otherwise 1.
     pub block_size: usize,
-    /// The box around everything.
+    /// The box around the whole scene.
     pub scene: Aabb<S>,
-    /// How many more references there may be below than there are: what [`Split::Spatial`] may add.
+    /// Maximum number of references that [`Split::Spatial`] may add below.
     pub extra_references: usize,
 }
 
 impl<S: Scalar> BuildNode<'_, S> {
-    /// The box around the primitives' centroids: O(n), for those who ask.
+    /// Returns the box around the references' centroids, in O(n).
     pub fn centroids(&self) -> Aabb<S> {
         centroids(self.references)
     }
 }
 
-/// What a heuristic proposes.
+/// A proposal of a heuristic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Split<S = f32> {
-    /// No split: make a leaf.
+    /// No split: the node becomes a leaf.
     Leaf,
-    /// Left, the references with `centroid()[axis] < position`; right, the others.
+    /// A plane: references with `centroid()[axis] < position` go left.
+    ///
+    /// The others go right.
     Plane {
-        /// The axis across which the plane lies.
+        /// The axis that the plane is perpendicular to.
         axis: Axis,
-        /// The plane's coordinate on it.
+        /// The plane's coordinate on the axis.
         position: S,
     },
-    /// Left, the `left` references with the smallest `centroid()[axis]`, equal ones by index.
+    /// A number: the `left` references with the smallest centroids go left.
+    ///
+    /// Centroids are compared by `centroid()[axis]`, equal ones by index. The others go right.
     Count {
-        /// The axis along which to count.
+        /// The axis along which centroids are compared.
         axis: Axis,
-        /// How many go left.
+        /// The number of references that go left.
         left: usize,
     },
-    /// Left, what lies below `position`; right, what lies above. References whose boxes are on both sides are cut in
-    /// two, or go to one side as a whole where that is cheaper (Stich, Friedrich and Dietrich, Spatial Splits in Bounding
-    /// Volume Hierarchies, HPG 2009). Taken only if [`extra_references`](BuildNode::extra_references) has room for all that are on both sides.
+    /// A plane in space: the part below `position` goes left, the part above right.
+    ///
+    /// References whose boxes are on both sides are cut in two, or go to one side as a whole
+    /// where that is cheaper (Stich, Friedrich and Dietrich, Spatial Splits in Bounding
+    /// Volume Hierarchies, HPG 2009). The split is taken only if
+    /// [`extra_references`](BuildNode::extra_references) has room for all references that
+    /// are on both sides.
     Spatial {
-        /// The axis across which the plane lies.
+        /// The axis that the plane is perpendicular to.
         axis: Axis,
-        /// The plane's coordinate on it.
+        /// The plane's coordinate on the axis.
         position: S,
     },
 }

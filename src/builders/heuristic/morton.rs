@@ -11,15 +11,18 @@ use crate::simd::{Backend, Kernel, prefetch_ahead};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// Sorts references once along Morton's curve, and splits where the highest bit changes (Lauterbach et al., Fast BVH
-/// Construction on GPUs, 2009: the linear hierarchy).
+/// Splits along the Morton curve, where the highest bit of the codes changes.
 ///
-/// The quickest build, for scenes that change each frame; blind to sizes, so rays visit more nodes, some of which
-/// [`Optimise`](crate::Optimise) saves. What lies in one of 65,536 cells on each axis stays in the input's order.
+/// References are sorted once, by their Morton codes (Lauterbach et al., Fast BVH Construction on
+/// GPUs, 2009: the linear hierarchy).
+///
+/// A quick build, for scenes that change each frame. It is blind to sizes, so rays visit more
+/// nodes; [`Optimise`](crate::Optimise) saves some of them. Primitives in the same of 65,536 cells
+/// on each axis stay in the order of the input.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Morton;
 
-/// Bits of a code on each axis.
+/// Bits of a code for each axis.
 const BITS: u32 = 16;
 
 impl<S: Scalar> Heuristic<S> for Morton {
@@ -27,20 +30,22 @@ impl<S: Scalar> Heuristic<S> for Morton {
         Some(S::codes(references, scene))
     }
 
-    /// Of a heuristic that asks this one but does not pass its codes on: equal halves.
+    /// Splits into equal halves.
+    ///
+    /// It serves a heuristic that calls this one, but does not pass on its codes.
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
         Median.split(node)
     }
 }
 
-/// Each reference's place on the curve through a box.
+/// Returns the Morton code of each reference: its place on the curve in a box.
 pub(in crate::builders) fn new_codes<S: Scalar>(references: &[PrimRef<S>], scene: &Aabb<S>) -> Vec<u64> {
     let mut numbers = vec![0; references.len()];
     codes(references, scene, &mut numbers);
     numbers
 }
 
-/// The same in memory for as many.
+/// Writes the Morton code of each reference to `codes`.
 pub(in crate::builders) fn codes<S: Scalar>(references: &[PrimRef<S>], scene: &Aabb<S>, codes: &mut [u64]) {
     let mut parts: Vec<_> = references.chunks(TASK_SIZE).zip(codes.chunks_mut(TASK_SIZE)).collect();
     parallel::each(&mut parts, |(references, codes)| {
@@ -70,14 +75,16 @@ impl<S: Scalar> Kernel for Codes<'_, S> {
     }
 }
 
-/// Two zeros before each of the lowest 16 bits: three numbers' bits in turns make a code.
+/// Puts two zeros before each of the lowest 16 bits.
+///
+/// A code interleaves the bits of three numbers.
 #[inline(always)]
 fn spread(bits: u32) -> u64 {
     let [low, high] = [bits, bits >> 8].map(|byte| u64::from(SPREAD[byte as usize % SPREAD.len()]));
     high << 24 | low
 }
 
-/// The same of a byte.
+/// The spread bits of each byte.
 const SPREAD: [u32; 256] = {
     let mut table = [0; 256];
     let mut byte = 0;
@@ -109,7 +116,7 @@ mod tests {
         let scene = Aabb::new([-1.0, 2.0, 0.0], [3.0, 2.5, 9.0]);
         let at = |point: [f32; 3]| PrimRef::new(Aabb::new(point, point), u32::MAX);
         let corners = [at(scene.min), at(scene.center()), at(scene.max)];
-        // Of each coordinate, the highest bit and no other; all bits.
+        // No bit, the highest bit on each axis and no other, all bits.
         let mut found = [7; 3];
         codes(&corners, &scene, &mut found);
         assert_eq!(found, [0, 0b111 << 45, (1 << 48) - 1]);

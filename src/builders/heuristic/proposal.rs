@@ -1,10 +1,10 @@
-//! What this crate's own heuristics know of a split beside where it is.
+//! Proposals of this crate's own heuristics: a split, and its sides.
 
 use super::Split;
 use crate::builders::reference::PrimRef;
 use crate::geometry::{Aabb, Axis, Scalar};
 
-/// A split, and its sides, if they are known.
+/// A split, and its sides if they are known.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct Proposal<S> {
@@ -18,7 +18,7 @@ impl<S> From<Split<S>> for Proposal<S> {
     }
 }
 
-/// Asked for by this crate alone, since what is answered is believed.
+/// Token that only this crate can make: `proposal` is trusted unchecked.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct Own(());
@@ -27,22 +27,28 @@ impl Own {
     pub(in crate::builders) const BUILD: Self = Self(());
 }
 
-/// The sides of a plane between two bins: what was counted before it and behind it.
+/// The sides of a plane between two bins.
+///
+/// The left side has the references that were counted before the plane, the right side the others.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::builders) struct Sides<S> {
     pub(super) axis: Axis,
-    /// Where bins begin.
+    /// The coordinate where the bins begin.
     pub(super) origin: S,
     /// Bins per unit of length.
     pub(super) scale: S,
-    /// The first on the right.
+    /// The number of the first bin on the right side.
     pub(super) bin: S,
-    /// Around the references of each: no other loop over them is needed, which took a tenth of a build.
+    /// The boxes around the references of each side.
+    ///
+    /// They save another loop over the references, which took a tenth of a build.
     pub boxes: [Aabb<S>; 2],
 }
 
 impl<S: Scalar> Sides<S> {
-    /// Whether a reference was counted before the plane: as `Grid::cells` rounds, where a NaN is the first bin's.
+    /// Returns whether a reference was counted before the plane.
+    ///
+    /// It rounds as `Grid::cells` does, which puts NaN into the first bin.
     #[inline(always)]
     pub fn has_on_the_left(&self, reference: &PrimRef<S>) -> bool {
         let is_behind = (reference.middle(self.axis) - self.origin) * self.scale >= self.bin;

@@ -1,39 +1,44 @@
-//! The surface area heuristic's costs.
+//! The costs of the surface area heuristic.
 
 use super::{BuildNode, Proposal, Split};
 use crate::geometry::Scalar;
 
 /// The costs that the surface area heuristic weighs against each other.
 ///
-/// A ray that meets a node's box meets a child's with a probability of about the ratio of their
+/// A ray that meets a node's box meets a child's box with a probability of about the ratio of their
 /// surface areas (Goldsmith and Salmon 1987). So a split costs
 ///
 /// ```text
 /// traversal + intersection * (area(left) * n_left + area(right) * n_right) / area(node)
 /// ```
 ///
-/// and a leaf `intersection * n`, or `intersection * ceil(n / 8)` where eight are tested at once. Only the ratio of the
-/// two matters.
+/// and a leaf costs `intersection * n`, or `intersection * ceil(n / 8)` where eight are tested at
+/// once. Only the ratio of the two costs matters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SahCost {
-    /// Of a step through an inner node: two box tests and the choice between them.
+    /// The cost of a step through an inner node.
+    ///
+    /// A step consists of two box tests and the choice between the children.
     pub traversal: f64,
-    /// Of one primitive's test.
+    /// The cost of one primitive's test.
     pub intersection: f64,
 }
 
 impl Default for SahCost {
-    /// A test costs 0.7 of a step: with this crate's traversal, trees of a tenth fewer nodes than at
-    /// equal costs, built a tenth sooner, traced as fast or a few percent faster (three scenes, leaf
-    /// sizes 4 to 16, ratios 0.35 to 1).
+    /// Returns the costs 1 of a step and 0.7 of a test.
+    ///
+    /// With this crate's traversal, trees have a tenth fewer nodes than with equal costs. They are
+    /// built sooner, and traced as fast or faster (measured: docs/decisions.md, 21).
     fn default() -> Self {
         Self { traversal: 1.0, intersection: 0.7 }
     }
 }
 
 impl SahCost {
-    /// The best proposal, whose sides' areas times numbers of primitives sum to `weighted_area`, all areas scaled by the node's
-    /// own `area_scale`; or a leaf, where there may be one and it costs no more.
+    /// Returns the best proposal, or a leaf where it is allowed and costs no more.
+    ///
+    /// `weighted_area` is the sum of the sides' areas times their numbers of primitives, for
+    /// `best`. All areas are scaled by the node's own `area_scale`.
     pub(super) fn split_or_leaf<S: Scalar>(
         &self,
         node: &BuildNode<'_, S>,
@@ -50,7 +55,9 @@ impl SahCost {
         if leaf_cost <= self.traversal * area + tests { Split::Leaf.into() } else { best }
     }
 
-    /// Whether one block holds all, which no split makes cheaper.
+    /// Returns whether one block holds all references.
+    ///
+    /// No split makes such a node cheaper.
     pub(super) fn is_block<S: Scalar>(node: &BuildNode<'_, S>) -> bool {
         node.references.len() <= node.block_size.min(node.max_leaf_size)
     }

@@ -1,42 +1,53 @@
-//! The surface area heuristic with splits in space.
+//! The surface area heuristic with spatial splits.
 
 use super::{BinnedSah, BuildNode, Heuristic, Own, Proposal, SahCost, Split};
 use crate::builders::spatial_split::halves;
 use crate::geometry::{Aabb, Axis, Scalar};
 
-/// [`BinnedSah`], or, where its sides overlap and that is cheaper, a plane that cuts references in two (Stich, Friedrich
-/// and Dietrich, Spatial Splits in Bounding Volume Hierarchies, HPG 2009).
+/// [`BinnedSah`], with planes that cut references in two.
 ///
-/// For scenes of large primitives beside small ones; on scans it changes nothing. A primitive may be in several leaves, and
-/// is an answer once. Boxes of references are cut, not primitives, and so answers stay those of the naive loop to the bit.
+/// Such a plane is chosen where the sides of [`BinnedSah`]'s plane overlap and the cut is cheaper
+/// (Stich, Friedrich and Dietrich, Spatial Splits in Bounding Volume Hierarchies, HPG 2009).
 ///
-/// Nodes of 16 children, tested all at once, leave it little to gain. With the same reinsertion, over [`BinnedSah`]'s, rays
-/// go at 1.02 on sponza (primary ones at 1.09, random at 0.97), 1.05 on a kitchen, 0.93 on a hotel room and 1.01 on dragon;
-/// cutting triangles instead of their boxes, as Stich does, is within 2 % of that.
+/// For scenes of large primitives beside small ones; on scans it changes nothing. A primitive may
+/// be in several leaves, and is one answer. Boxes of references are cut, not primitives, so answers
+/// stay those of the naive loop to the bit.
+///
+/// Nodes of 16 children, tested all at once, leave it little to gain: with the same reinsertion,
+/// rays are 0.93 to 1.05 times as fast as with [`BinnedSah`], depending on the scene. To cut
+/// triangles in place of their boxes, as Stich does, makes little difference (measured:
+/// docs/decisions.md, 20).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpatialSah {
-    /// Planes between centroids, and the costs.
+    /// The planes between centroids, and the costs.
     pub planes: BinnedSah,
-    /// Which part of the scene's area the sides of the best such plane must have in common for a cut to be tried.
+    /// Least overlap of the sides for which a cut is tried.
+    ///
+    /// The overlap is the area that the sides of the best plane between centroids have in common,
+    /// as a fraction of the scene's area.
     pub overlap: f64,
-    /// How many more references than primitives there may be, in parts of their number, from 0 to
-    /// [`MAX_GROWTH`](Self::MAX_GROWTH): bounds the memory, of which there is as much from the start.
+    /// Maximum number of extra references, as a fraction of the primitives.
+    ///
+    /// From 0 to [`MAX_GROWTH`](Self::MAX_GROWTH). It bounds the memory, which is
+    /// allocated at the start.
     pub growth: f64,
 }
 
 impl SpatialSah {
-    /// The largest growth; more is taken for as much.
+    /// The largest growth; larger values are clamped.
     pub const MAX_GROWTH: f64 = 4.0;
 }
 
 impl Default for SpatialSah {
-    /// 16 bins, cuts where a hundredth of the scene's area overlaps, at most half as many references more.
+    /// Returns a heuristic with 16 bins that adds at most half as many references.
+    ///
+    /// A cut is tried where a hundredth of the scene's area overlaps.
     fn default() -> Self {
         Self { planes: BinnedSah::default(), overlap: 1e-2, growth: 0.5 }
     }
 }
 
-/// Slices of space on each axis.
+/// Number of slices of space on each axis.
 const SLICES: usize = 16;
 
 impl<S: Scalar> Heuristic<S> for SpatialSah {
@@ -79,18 +90,21 @@ impl SpatialSah {
     }
 }
 
-/// Equal slices of a node's box: the boxes of what is in them, and how many references begin and end there.
+/// Equal slices of a node's box along an axis, with their content.
+///
+/// For each slice, the box around the parts of references in it, and the numbers of references that
+/// begin and end there.
 struct Slices<S> {
     axis: usize,
     boxes: [Aabb<S>; SLICES],
     begin: [usize; SLICES],
     end: [usize; SLICES],
-    /// The planes between them; the first is before all.
+    /// The planes before each slice; the first is before all.
     planes: [S; SLICES],
 }
 
 impl<S: Scalar> Slices<S> {
-    /// None if no plane between them may pay.
+    /// Fills the slices of a node; `None` if no plane between them may pay.
     fn of(node: &BuildNode<'_, S>, axis: Axis) -> Option<Self> {
         let i = axis.index();
         let (origin, extent) = (node.aabb.min[i], node.aabb.extent()[i]);
@@ -129,8 +143,10 @@ impl<S: Scalar> Slices<S> {
         Some(slices)
     }
 
-    /// Whether any plane has something on both sides and cuts no more than half of the references. In a heap of large
-    /// primitives none does, and computing the boxes, which takes most of the time, would be for nothing at every node.
+    /// Returns whether a plane has references on both sides and cuts at most half.
+    ///
+    /// In a heap of large primitives no plane does. The boxes, which take most of the time, would
+    /// be computed in vain at every node.
     fn may_pay(&self, references: usize) -> bool {
         let (mut begun, mut ended) = (0, 0);
         (1..SLICES).any(|slice| {
@@ -140,7 +156,9 @@ impl<S: Scalar> Slices<S> {
         })
     }
 
-    /// The cheapest plane with references on both sides for which there is room, and its cost.
+    /// Returns the cheapest possible plane, and its cost.
+    ///
+    /// A plane is possible if it has references on both sides and there is room for all of them.
     fn best(&self, node: &BuildNode<'_, S>, scale: S) -> Option<(S, S)> {
         let cost = |aabb: &Aabb<S>, count: usize| aabb.scaled_half_area(scale) * S::from_count(count as i32);
         let mut right_cost = [(S::ZERO, 0); SLICES];

@@ -1,4 +1,4 @@
-//! The surface area heuristic on every split there is.
+//! The surface area heuristic on all splits.
 
 use super::{BuildNode, Heuristic, SahCost, Split};
 use crate::builders::reference::PrimRef;
@@ -7,15 +7,16 @@ use crate::parallel;
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// References above which the three axes are swept on several threads.
+/// The three axes are swept in parallel from this number of references on.
 const PARALLEL: usize = 1 << 13;
 
-/// The cheapest of all splits of the references in the order of their centroids, on all three axes,
-/// by the surface area heuristic (MacDonald and Booth, Heuristics for Ray Tracing Using Space
-/// Subdivision, 1990).
+/// The surface area heuristic on all splits by number.
 ///
-/// Exact where [`BinnedSah`](super::BinnedSah) samples; each node sorts its references on each
-/// axis, so a build takes O(n log^2 n).
+/// The cheapest split of the references in the order of their centroids, on all three axes, is
+/// chosen (MacDonald and Booth, Heuristics for Ray Tracing Using Space Subdivision, 1990).
+///
+/// It is exact where [`BinnedSah`](super::BinnedSah) samples. Each node sorts its references on
+/// each axis, so a build takes O(n log^2 n).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SweepSah {
     /// The costs of a step and of a test.
@@ -23,7 +24,7 @@ pub struct SweepSah {
 }
 
 impl SweepSah {
-    /// At most so many references are swept without asking for memory.
+    /// Up to this many references are swept without an allocation.
     pub(super) const SMALL: usize = 8;
 }
 
@@ -44,7 +45,7 @@ impl SweepSah {
             if centroids.min[axis.index()] < centroids.max[axis.index()] {
                 best_count(node.references, axis, scale, memory)
             } else {
-                // No order to sweep in.
+                // All centroids are equal on this axis: there is no order to sweep in.
                 Best { left: n / 2, weighted_area: f64::INFINITY }
             }
         };
@@ -59,7 +60,7 @@ impl SweepSah {
                 parallel::map(Vec::from(Axis::ALL), |axis| best(axis, &mut vec![Place::default(); n]));
             [sweeps[0], sweeps[1], sweeps[2]]
         };
-        // The first of equals.
+        // Of equal costs, the first axis is taken.
         let (mut axis, mut best) = (Axis::X, sweeps[0]);
         for (next, sweep) in [(Axis::Y, sweeps[1]), (Axis::Z, sweeps[2])] {
             if sweep.weighted_area < best.weighted_area {
@@ -80,15 +81,19 @@ struct Best {
 /// A place in the order of the centroids along an axis.
 #[derive(Clone, Copy, Default)]
 struct Place {
-    /// The centroid as ordered bits, then the primitive's index: sorted as [`Split::Count`] counts.
+    /// The centroid as ordered bits, then the primitive's index.
+    ///
+    /// Places are sorted in the order by which [`Split::Count`] counts.
     key: (u64, u32),
     /// The reference's position in the node.
     position: u32,
-    /// The cost of everything from this place on.
+    /// The cost of all references from this place on.
     right_cost: f64,
 }
 
-/// The cheapest split by number along an axis. `memory` has a place for each reference.
+/// Returns the cheapest split by number along an axis.
+///
+/// `memory` has a place for each reference.
 fn best_count<S: Scalar>(references: &[PrimRef<S>], axis: Axis, scale: S, memory: &mut [Place]) -> Best {
     let n = references.len();
     for ((place, reference), position) in memory.iter_mut().zip(references).zip(0..) {
@@ -96,7 +101,8 @@ fn best_count<S: Scalar>(references: &[PrimRef<S>], axis: Axis, scale: S, memory
         place.position = position;
     }
     memory.sort_unstable_by_key(|place| place.key);
-    // In f64, where the sums of products of an f32 and a count are exact: equals compare equal.
+    // In `f64`, where the product of an `f32` and a count is exact, as are sums of products of one
+    // area: equal costs compare equal.
     let cost = |aabb: &Aabb<S>, count: usize| aabb.scaled_half_area(scale).to_f64() * count as f64;
     let aabb_of = |place: &Place| references[place.position as usize].aabb;
 
@@ -110,7 +116,8 @@ fn best_count<S: Scalar>(references: &[PrimRef<S>], axis: Axis, scale: S, memory
     for (pair, count) in memory.windows(2).zip(1..) {
         left = left.union(aabb_of(&pair[0]));
         let weighted_area = cost(&left, count) + pair[1].right_cost;
-        // Of equals the most even: identical primitives make halves, not a chain.
+        // Of equal costs, the most even split is taken: identical primitives make
+        // halves, not a chain.
         let is_better = weighted_area < best.weighted_area
             || weighted_area == best.weighted_area && count.abs_diff(n / 2) < best.left.abs_diff(n / 2);
         if is_better {
@@ -129,7 +136,7 @@ mod tests {
 
     #[test]
     fn the_split_is_the_cheapest_of_all() {
-        // Pseudo-random boxes; every split on every axis is priced by brute force.
+        // Pseudo-random boxes; brute force computes the cost of every split on every axis.
         let mut rng = Pcg64Mcg::seed_from_u64(1);
         let mut next = || rng.random::<f32>();
         let references: Vec<PrimRef> = (0..40)

@@ -1,7 +1,9 @@
-//! A better tree from any tree: subtrees are taken out and put in where they cost less.
+//! Reinsertion: subtrees of a tree move to places where they cost less.
 //!
 //! ```text
-//! tree -> linked tree -> largest nodes -> rounds of (best places, all at once -> moves, best first) -> tree
+//! tree -> linked tree -> largest nodes -> rounds -> tree
+//!                                         each: the best places, all at once
+//!                                               -> the moves, best first
 //! ```
 
 mod parent_links;
@@ -16,33 +18,43 @@ use core::cmp::{Ordering, Reverse};
 use parent_links::Linked;
 use search::Move;
 
-/// Reinsertion: the largest nodes are taken out of the tree, each with all below it, and put in again where the sum of
-/// the inner nodes' surface areas becomes least (Bittner, Hapala and Havran, Fast Insertion-Based Optimization of
-/// Bounding Volume Hierarchies, 2013; all places of a round sought at once as by Meister and Bittner, Parallel Reinsertion
-/// for Bounding Volume Hierarchy Optimization, 2018).
+/// Reinsertion of the largest nodes of a tree, to lower its cost.
 ///
-/// Takes a tree of any heuristic: a part of [`Builder::optimise`](crate::Builder::optimise), or a step of its own,
-/// [`Tree::optimise`](crate::Tree::optimise). The result is the same on any number of threads, and no deeper than
-/// [`MAX_DEPTH`](crate::MAX_DEPTH).
+/// A node is taken out of the tree with its subtree, and inserted again where the sum of the inner
+/// nodes' surface areas becomes least (Bittner, Hapala and Havran, Fast Insertion-Based
+/// Optimization of Bounding Volume Hierarchies, 2013). All places of a round are sought at once
+/// (Meister and Bittner, Parallel Reinsertion for Bounding Volume Hierarchy Optimization, 2018).
 ///
-/// A node without a better place is left alone in the next round, in the next two the time after, then in three each
-/// time: most have none, and looking for one is what takes the time. It is over where four rounds, in which every node was
-/// asked, gain less than a thousandth of the sum of areas that there was at first: what there is beyond is within the luck of
-/// ties. Places of one round are sought without the moves of the others: what turns out to gain nothing is put back, so that
-/// no tree becomes worse, and any number of rounds ends.
+/// Reinsertion takes the tree of any heuristic. It is a part of a build, see
+/// [`Builder::optimise`](crate::Builder::optimise), or a step of its own, see
+/// [`Tree::optimise`](crate::Tree::optimise). The result is the same on any number of threads, and
+/// no deeper than [`MAX_DEPTH`](crate::MAX_DEPTH).
 ///
-/// The default, a hundredth of the nodes in 8 rounds, gets most of the gain: see the table in
-/// `docs/building.md`.
+/// A node without a better place is left alone in the next round. The second time in a row, it is
+/// left alone for two rounds, and after that for three each time. Most nodes have no better place,
+/// and the search for one takes most of the time.
+///
+/// Reinsertion ends if the last four rounds gain less than a thousandth of the initial sum
+/// of areas. In four rounds every node is tried at least once. Smaller gains are within
+/// the noise of ties.
+///
+/// The places of one round are sought without regard to the other moves of the round. A move that
+/// turns out to gain nothing is undone. So no tree becomes worse, and any number of rounds ends.
+///
+/// The default, a hundredth of the nodes in 8 rounds, gets most of the gain: see the table
+/// in `docs/building.md`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Optimise {
-    /// Which part of all nodes may be taken out, from 0 to 1: the largest.
+    /// The fraction of all nodes that may be taken out, from 0 to 1.
+    ///
+    /// The nodes with the largest areas are chosen.
     pub share: f64,
-    /// How many rounds there are at the most.
+    /// Maximum number of rounds.
     pub rounds: usize,
 }
 
 impl Optimise {
-    /// Nothing at all: the tree as it was built.
+    /// No reinsertion: the tree as it was built.
     pub const NONE: Self = Self { share: 0.0, rounds: 0 };
 }
 
@@ -52,24 +64,30 @@ impl Default for Optimise {
     }
 }
 
-/// What an optimisation has done.
+/// The result of a reinsertion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OptimiseStats {
-    /// The sum of the inner nodes' surface areas before it, in units of the root's.
+    /// The sum of the inner nodes' surface areas before the reinsertion.
+    ///
+    /// In units of the root's surface area.
     pub before: f64,
-    /// The same after it.
+    /// The same sum after the reinsertion.
     pub after: f64,
-    /// How many subtrees were moved.
+    /// The number of subtrees that were moved.
     pub moves: usize,
 }
 
-/// Which part of the sum of areas the last rounds have to gain for another one. Without such an end the same trees cost 4 to 8 %
-/// more of a build with [`Quality::High`](crate::Quality) where there is little to gain (dragon, hairball, spaceship), for areas
-/// smaller by less than a thousandth.
+/// Least gain of the last rounds for another round.
+///
+/// In units of the initial sum of areas. Without this end, a build with
+/// [`Quality::High`](crate::Quality) takes 4 to 8 % longer where there is little to gain (measured:
+/// docs/decisions.md, 10).
 const LEAST_GAIN: f64 = 1e-3;
 
 impl Optimise {
-    /// The tree, made better for as long as `goes_on` says so, in memory in which nothing lies.
+    /// Improves the tree by reinsertion, as long as `goes_on` returns true.
+    ///
+    /// `memory` is scratch memory; its old content is lost.
     pub(crate) fn run<S: Scalar>(
         &self,
         tree: &mut Tree<S>,
@@ -84,7 +102,7 @@ impl Optimise {
         let mut moves = 0;
         let mut last_gains = [f64::INFINITY; Candidate::LONGEST_PAUSE as usize + 1];
         for number in 0..self.rounds {
-            // Nothing can be told of infinite areas.
+            // With infinite areas, no gain can be computed.
             let may_gain = last_gains.iter().sum::<f64>() > least;
             if !may_gain || !goes_on() {
                 break;
@@ -100,7 +118,9 @@ impl Optimise {
     }
 }
 
-/// Takes candidates out and puts them where they cost least. Tells how many were moved, and by how much the sum of areas shrank.
+/// Moves candidates to the places where they cost least.
+///
+/// Returns the number of moves, and the decrease of the sum of areas.
 fn round<S: Scalar>(
     linked: &mut Linked<'_, S>,
     candidates: &mut [Candidate],
@@ -116,7 +136,7 @@ fn round<S: Scalar>(
     .into_iter()
     .flatten()
     .collect();
-    // The best first; of equals, that of the first node.
+    // The largest gain comes first; of equal gains, that of the first node.
     found.sort_unstable_by(|a, b| {
         b.gain.partial_cmp(&a.gain).unwrap_or(Ordering::Equal).then(a.node.cmp(&b.node))
     });
@@ -128,15 +148,17 @@ fn round<S: Scalar>(
 /// A node that may be taken out.
 struct Candidate {
     node: u32,
-    /// Rounds that it is left alone for.
+    /// The remaining rounds in which the node is left alone.
     rest: u8,
-    /// How many those were at first.
+    /// The length of its last pause, in rounds.
     pause: u8,
 }
 
 impl Candidate {
-    /// After many failures every fourth round is enough: with it trees are as good, to the luck of a few parts in a thousand, and
-    /// on sponza 16 rounds of a tenth of the nodes take 19 ms, not 52; on dragon 7, not 25.
+    /// Maximum pause: after many failures, every fourth round is enough.
+    ///
+    /// The trees are as good, up to noise, and a run takes less than half of the time (measured:
+    /// docs/decisions.md, 11).
     const LONGEST_PAUSE: u8 = 3;
 
     fn new(node: u32) -> Self {
@@ -155,10 +177,12 @@ impl Candidate {
     }
 }
 
-/// The nodes of the largest areas but the root, of equal ones the first, in no order. A child is never larger than its parent.
+/// Returns the nodes with the largest areas, except the root, in no order.
 ///
-/// From the root down, by the first bits of their areas, and exactly only where the last are to be told apart: by a heap of all
-/// that may be next it took two to three times as long (5.3 ms instead of 1.7 of 290, a tenth of a million triangles' nodes).
+/// Of equal areas, the first nodes are chosen. A child is never larger than its parent, so the
+/// search goes from the root down. The first bits of the areas order the nodes; exact areas are
+/// compared only to choose the last nodes. Refused: a heap of all nodes that may be next, which
+/// took two to three times as long (measured: docs/decisions.md, 12).
 fn largest<S: Scalar>(linked: &Linked<'_, S>, count: usize) -> Vec<Candidate> {
     if count == 0 {
         return Vec::new();
@@ -190,15 +214,15 @@ fn largest<S: Scalar>(linked: &Linked<'_, S>, count: usize) -> Vec<Candidate> {
 }
 
 impl<S: Scalar> Tree<S> {
-    /// Makes it better by reinsertion; queries have the same answers.
+    /// Improves the tree by reinsertion; queries keep their answers.
     ///
     /// ```
     /// use bvhkit::heuristic::Median;
     /// use bvhkit::{Bvh, Optimise, Sphere, Tree};
     ///
-    /// let spheres: Vec<Sphere> =
-    ///     (0..1000).map(|i| Sphere::new([(i * i % 97) as f32, (i % 31) as f32, 0.0], 1.0)).collect();
-    /// let mut bvh = Bvh::builder().heuristic(Median).layout::<Tree>().build(&spheres)?;
+    /// let spheres =
+    ///     (0..1000).map(|i| Sphere::new([(i * i % 97) as f32, (i % 31) as f32, 0.0], 1.0));
+    /// let mut bvh = Bvh::builder().heuristic(Median).layout::<Tree>().build(spheres)?;
     /// let gain = bvh.optimise(&Optimise { share: 0.1, rounds: 4 });
     /// assert!(gain.moves > 0 && gain.after < gain.before);
     /// # Ok::<(), bvhkit::BuildError>(())
@@ -217,7 +241,7 @@ mod tests {
 
     #[test]
     fn the_largest_are_taken_and_of_equal_ones_the_first() {
-        // Of some sizes, many alike.
+        // A few sizes, and many equal ones.
         let spheres =
             (0..200u8).map(|i| Sphere::new([f32::from(i), f32::from(i % 7), 0.0], f32::from(i % 3)));
         let builder = Bvh::builder().optimise(Optimise::NONE).max_leaf_size(1).layout::<Tree>();
@@ -235,7 +259,9 @@ mod tests {
         }
     }
 
-    /// All nodes may be moved for ever. Tells what that gains, and how often it was asked whether to go on.
+    /// Optimises with all nodes as candidates and no limit of rounds.
+    ///
+    /// Returns the result, and the number of calls to `goes_on`.
     fn without_bound(spheres: &[Sphere]) -> (OptimiseStats, usize) {
         let builder = Bvh::builder().heuristic(BinnedSah::default()).max_leaf_size(1).layout::<Tree>();
         let mut tree = builder.build(spheres).unwrap().layout().clone();
@@ -248,7 +274,7 @@ mod tests {
 
     #[test]
     fn rounds_without_bound_end() {
-        // Two of these promise to gain by trading places, again and again.
+        // Two of these spheres promise a gain by trading places, again and again.
         let traders = [
             ([6.0, 4.0, 8.0], 0.25),
             ([4.0, 5.0, 7.0], 3.0),
@@ -262,11 +288,11 @@ mod tests {
         .map(|(center, radius)| Sphere::new(center, radius));
         let (_, asked) = without_bound(&traders);
         assert!(asked < 100, "{asked}");
-        // Areas that are no numbers.
+        // Areas that overflow.
         let huge = [-1.0, 0.0, 0.3, 1.0].map(|x: f32| Sphere::new([x * 1.5e38; 3], 1e38));
         let (gain, asked) = without_bound(&huge);
         assert!(gain.moves == 0 && asked < 100, "{gain:?} {asked}");
-        // A grid, where many places cost the same but for a rounding.
+        // A grid, where many places cost the same up to rounding.
         let grid: Vec<Sphere> = (0..4000_u16)
             .map(|i| {
                 let center = [i % 16, i / 16 % 16, i / 256].map(|place| 0.1 * f32::from(place));

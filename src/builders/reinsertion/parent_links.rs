@@ -1,4 +1,4 @@
-//! The tree with a way up.
+//! A tree whose nodes are linked to their parents.
 
 use super::search::Move;
 use crate::geometry::{Aabb, Scalar};
@@ -7,14 +7,16 @@ use crate::tree::{Child, LeafRange, MAX_DEPTH, Node, Tree};
 use alloc::vec::Vec;
 use core::mem::take;
 
-/// A tree whose nodes, inner ones first, then leaves, know their parents, boxes and heights.
+/// A tree whose nodes know their parents, boxes and heights.
+///
+/// Inner nodes come first, then leaves.
 pub(super) struct Linked<'m, S> {
     nodes: &'m mut [LinkedNode<S>],
-    /// Of inner nodes.
+    /// The children of each inner node.
     children: Vec<[u32; 2]>,
-    /// Slots of leaves.
+    /// The slots of each leaf.
     leaves: Vec<Child>,
-    /// 1 / the largest extent.
+    /// The scale for [`Aabb::scaled_half_area`]: 1 / the largest extent.
     scale: S,
 }
 
@@ -22,25 +24,30 @@ pub(super) struct Linked<'m, S> {
 struct LinkedNode<S> {
     aabb: Aabb<S>,
     parent: u32,
-    /// Of the longest path down to a leaf, in steps.
+    /// The length of the longest path down to a leaf, in steps.
     height: u32,
 }
 
-/// What a move has done, to be undone.
+/// A move that was applied, with the data to undo it.
 struct Moved {
-    /// By how much it has made the sum of areas smaller.
+    /// The decrease of the sum of areas.
     gain: f64,
-    /// The parent's children before.
+    /// The children of the node's parent before the move.
     children: [u32; 2],
-    /// The node, its parent, sibling and the node above them, its new sibling and what was that one's parent.
+    /// The nodes that the move concerns.
+    ///
+    /// In this order: the node, its parent, its sibling, its grandparent, the new sibling, and the
+    /// parent that the new sibling had before the move.
     concerned: [u32; 6],
 }
 
 impl<'m, S: Scalar> Linked<'m, S> {
-    /// The root, an inner node.
+    /// The number of the root, which is an inner node.
     pub const ROOT: u32 = 0;
 
-    /// In memory in which nothing lies. None if there are fewer than three leaves: nothing could be moved.
+    /// Links the nodes of a tree; `None` if it has fewer than three leaves.
+    ///
+    /// In a smaller tree nothing can be moved. `memory` holds the nodes; its old content is lost.
     pub fn new(tree: &Tree<S>, memory: &'m mut Vec<Word>) -> Option<Self> {
         let inner = tree.nodes.len();
         if inner < 2 {
@@ -68,7 +75,7 @@ impl<'m, S: Scalar> Linked<'m, S> {
             let children = [link(0), link(1)];
             linked.children.push(children);
         }
-        // Children lie behind their parents.
+        // Children are stored after their parents.
         for node in (0..inner).rev() {
             linked.nodes[node].height = linked.height_above(linked.children[node]);
         }
@@ -99,20 +106,22 @@ impl<'m, S: Scalar> Linked<'m, S> {
         self.nodes[node as usize].parent
     }
 
-    /// None for a leaf.
+    /// Returns the children of an inner node; `None` for a leaf.
     #[inline(always)]
     pub fn children(&self, node: u32) -> Option<[u32; 2]> {
         self.children.get(node as usize).copied()
     }
 
-    /// The other child of the same parent.
+    /// Returns the other child of the node's parent.
     #[inline(always)]
     pub fn sibling(&self, node: u32) -> u32 {
         let [left, right] = self.children[self.parent(node) as usize];
         if left == node { right } else { left }
     }
 
-    /// The sum of the inner nodes' areas, in units of the root's; if that is zero or infinite, their number.
+    /// Returns the sum of the inner nodes' areas, in units of the root's area.
+    ///
+    /// If the root's area is zero or infinite, returns the number of inner nodes.
     pub fn cost(&self) -> f64 {
         let area = |node: &LinkedNode<S>| self.area_of(&node.aabb).to_f64();
         let root = area(&self.nodes[0]);
@@ -125,11 +134,13 @@ impl<'m, S: Scalar> Linked<'m, S> {
         1 + height(children[0]).max(height(children[1]))
     }
 
-    /// Moves a node beside its new sibling if that makes the sum of areas smaller, once other nodes have been moved. Tells by
-    /// how much.
+    /// Moves a node beside its new sibling, if that lowers the sum of areas.
+    ///
+    /// Returns the decrease. It may differ from the gain of `found`, since other nodes were moved
+    /// in the meantime.
     pub fn improve(&mut self, found: &Move<S>, touched: &mut [bool]) -> Option<f64> {
         let moved = self.apply(found, touched)?;
-        // Not if it is NaN: the areas are too large to be told apart.
+        // NaN is no gain: the areas are too large to be compared.
         if moved.gain > 0.0 {
             return Some(moved.gain);
         }
@@ -137,8 +148,10 @@ impl<'m, S: Scalar> Linked<'m, S> {
         None
     }
 
-    /// Moves a node beside its new sibling, unless one of those concerned was touched before, or that would make a circle
-    /// or too long a path.
+    /// Moves a node beside its new sibling; `None` if the move is not possible.
+    ///
+    /// It is not possible if one of the nodes concerned was touched before, or if it would make a
+    /// cycle or a path longer than [`MAX_DEPTH`].
     fn apply(&mut self, found: &Move<S>, touched: &mut [bool]) -> Option<Moved> {
         let Move { node, beside, .. } = *found;
         let (parent, sibling) = (self.parent(node), self.sibling(node));
@@ -155,7 +168,7 @@ impl<'m, S: Scalar> Linked<'m, S> {
         for node in concerned {
             touched[node as usize] = true;
         }
-        // The parent goes along: the sibling takes its place.
+        // The parent moves along, and the sibling takes its place.
         let children = self.children[parent as usize];
         self.replace(above, parent, sibling);
         self.replace(target, beside, parent);
@@ -164,7 +177,7 @@ impl<'m, S: Scalar> Linked<'m, S> {
         Some(Moved { gain, children, concerned })
     }
 
-    /// Puts a node back where it was, if it was the last that was moved.
+    /// Moves a node back to its old place, if it was the last node moved.
     fn undo(&mut self, moved: &Moved, touched: &mut [bool]) {
         let [_, parent, sibling, above, beside, target] = moved.concerned;
         self.replace(target, parent, beside);
@@ -177,7 +190,7 @@ impl<'m, S: Scalar> Linked<'m, S> {
         }
     }
 
-    /// How far a place is from the root; none if it lies below a node.
+    /// Returns the depth of a place; `None` if it is in the subtree of `node`.
     fn depth_outside(&self, mut place: u32, node: u32) -> Option<usize> {
         let mut depth = 0;
         while place != Self::ROOT {
@@ -203,7 +216,9 @@ impl<'m, S: Scalar> Linked<'m, S> {
         }
     }
 
-    /// Boxes and heights from a node up to the root. Tells by how much the sum of areas becomes smaller.
+    /// Updates boxes and heights from a node up to the root.
+    ///
+    /// Returns the decrease of the sum of areas.
     fn refit(&mut self, mut node: u32) -> f64 {
         let mut gain = 0.0;
         loop {
@@ -220,7 +235,7 @@ impl<'m, S: Scalar> Linked<'m, S> {
         }
     }
 
-    /// Writes nodes and slots depth first.
+    /// Writes the nodes and the slots to `tree`, depth first.
     pub fn write(&self, tree: &mut Tree<S>) {
         let mut nodes = take(&mut tree.nodes);
         nodes.clear();
@@ -257,7 +272,7 @@ mod tests {
     use crate::heuristic::{BuildNode, Heuristic, Split};
     use crate::{Axis, Bvh, Sphere};
 
-    /// Two halves, then one by one: two chains.
+    /// Splits in two halves, then one by one: two chains.
     struct Chains;
 
     impl Heuristic<f32> for Chains {
@@ -285,7 +300,7 @@ mod tests {
                 }
                 let (before, cost) = (all(&linked), linked.cost());
                 let root = linked.area(Linked::<f32>::ROOT).to_f64();
-                // Whatever was promised.
+                // The promised gain does not matter.
                 if let Some(gain) = linked.improve(&Move { node, beside, gain: 1.0 }, &mut touched) {
                     assert!((cost - linked.cost() - gain / root).abs() < 1e-6 * cost && linked.cost() < cost);
                     touched.fill(false);
@@ -321,7 +336,7 @@ mod tests {
             let left = linked.children[0][0] as usize;
             linked.children[linked.children[left][1] as usize][0]
         };
-        // The right chain grows by one each time, until it may not.
+        // The right chain grows by one each time, until it reaches the depth bound.
         let mut moves = 0;
         loop {
             let (moved, height, depth) = apply(second_of_the_left);

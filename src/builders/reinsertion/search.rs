@@ -1,28 +1,31 @@
-//! Where a subtree would cost least.
+//! The search for the place where a subtree costs least.
 
 use super::parent_links::Linked;
 use crate::geometry::Scalar;
 use alloc::vec::Vec;
 
-/// A subtree that costs less in another place.
+/// A move of a subtree to a place where it costs less.
 pub(super) struct Move<S> {
     pub node: u32,
-    /// Its new sibling.
+    /// The node's new sibling.
     pub beside: u32,
-    /// By how much the sum of areas shrinks.
+    /// The decrease of the sum of areas.
     pub gain: S,
 }
 
-/// How many places a search looks at, at the most. In good trees it looks at 10 to 40, and the sum of areas is within the luck of
-/// 0.4 % of what it is without a bound. Where everything overlaps, no place would be left out, and a round took as long as the
-/// square of the nodes; there the sum is by 1.6 % larger than with twice as many, in little more than half of the time.
+/// Maximum number of places that a search visits.
+///
+/// In good trees a search visits 10 to 40 places, and the bound makes no difference beyond noise.
+/// Where all boxes overlap, no place can be left out: without a bound, the time of a round would
+/// grow with the square of the number of nodes (measured: docs/decisions.md, 9).
 const MOST_PLACES: usize = 48;
 
-/// The best place for a node, if there is a better one than its own.
+/// Returns the best move of a node, if a place is better than its own.
 ///
-/// From the node's parent up to the root, each time down into the other side: what is gained above a place is known on
-/// the way, and a place costs at least the node's own area; where that is no more than what was found, nothing below is
-/// looked at. `open` is memory, empty before and after.
+/// The search goes from the node's parent up to the root, and at each ancestor down into the other
+/// side. The gain above a place is known on the way to it, and a place costs at least the node's
+/// own area. If the gain above minus this cost does not exceed the best gain so far, the search
+/// skips the place and everything below it. `open` is scratch memory, empty before and after.
 pub(super) fn best_move<S: Scalar>(
     linked: &Linked<'_, S>,
     node: u32,
@@ -35,9 +38,9 @@ pub(super) fn best_move<S: Scalar>(
     let aabb = *linked.aabb(node);
     let area = linked.area_of(&aabb);
     let mut sibling = linked.sibling(node);
-    // What is left below the place we have come up to, without the node.
+    // The box around everything below `pivot`, except the node.
     let mut rest = *linked.aabb(sibling);
-    // The parent goes along.
+    // The parent moves along, so its area is gained.
     let mut gained = linked.area(parent);
     let mut places = 0;
     let (mut best, mut pivot) = (Move { node, beside: node, gain: S::ZERO }, parent);

@@ -1,4 +1,4 @@
-//! The indexed triangle mesh, borrowed from its owner.
+//! The indexed triangle mesh, which borrows its buffers.
 
 use super::{Barycentrics, Corners, Triangle, Watertight};
 use crate::geometry::{Aabb, Ray, Scalar};
@@ -6,10 +6,10 @@ use crate::leaf::WatertightLeaf;
 use crate::primitive::{Intersect, Primitive};
 use core::fmt;
 
-/// Triangles as corners by index, in buffers that stay the user's. Hit as [`Triangle`] is.
+/// A triangle mesh that borrows its vertices and three indices per triangle.
 ///
-/// Iterating over a `&TriangleMesh` gives its triangles in order, so a tree is built from it as from
-/// a list, and hits carry the triangle's number:
+/// Its triangles are hit as [`Triangle`] is. Iterating over a `&TriangleMesh` yields them in order.
+/// So a tree is built from a mesh as from a list, and hits carry the index of the triangle:
 ///
 /// ```
 /// use bvhkit::{Bvh, Ray, TriangleMesh};
@@ -27,22 +27,22 @@ pub struct TriangleMesh<'a, S = f32> {
     triangles: &'a [[u32; 3]],
 }
 
-/// Why buffers are not a mesh.
+/// The reason why buffers do not form a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// A corner's index is not below the number of vertices.
+    /// The index of a corner is not below the number of vertices.
     IndexOutOfRange {
-        /// The triangle, counted from 0.
+        /// The index of the triangle, counted from 0.
         triangle: usize,
-        /// The index found there.
+        /// The vertex index of the corner.
         index: u32,
-        /// How many vertices there are.
+        /// The number of vertices.
         vertices: usize,
     },
-    /// A flat buffer's length is not a multiple of three.
+    /// The length of a flat buffer is not a multiple of three.
     NotTriples {
-        /// Its length.
+        /// The length of the buffer.
         length: usize,
     },
 }
@@ -67,10 +67,11 @@ impl fmt::Display for MeshError {
 impl core::error::Error for MeshError {}
 
 impl<'a, S: Scalar> TriangleMesh<'a, S> {
-    /// The mesh of `triangles`, each three indices into `vertices`.
+    /// Creates the mesh of `triangles`, each three indices into `vertices`.
     ///
     /// # Errors
-    /// [`MeshError::IndexOutOfRange`], naming the first triangle with a bad index.
+    ///
+    /// Returns [`MeshError::IndexOutOfRange`], which names the first triangle with a bad index.
     pub fn new(vertices: &'a [[S; 3]], triangles: &'a [[u32; 3]]) -> Result<Self, MeshError> {
         for (triangle, corners) in triangles.iter().enumerate() {
             if let Some(&index) = corners.iter().find(|&&i| i as usize >= vertices.len()) {
@@ -80,11 +81,14 @@ impl<'a, S: Scalar> TriangleMesh<'a, S> {
         Ok(Self { vertices, triangles })
     }
 
-    /// The same from flat buffers (x, y, z, x, ... and one index per corner), as graphics
-    /// interfaces and loaders have them. Nothing is copied.
+    /// Creates a mesh from flat buffers, without a copy.
+    ///
+    /// `coordinates` holds x, y, z, x, ... and `indices` holds one index per corner, as in graphics
+    /// interfaces and loaders.
     ///
     /// # Errors
-    /// As [`new`](Self::new), and [`MeshError::NotTriples`].
+    ///
+    /// Returns the errors of [`new`](Self::new), and [`MeshError::NotTriples`].
     pub fn from_flat(coordinates: &'a [S], indices: &'a [u32]) -> Result<Self, MeshError> {
         match (coordinates.as_chunks(), indices.as_chunks()) {
             ((vertices, []), (triangles, [])) => Self::new(vertices, triangles),
@@ -93,17 +97,17 @@ impl<'a, S: Scalar> TriangleMesh<'a, S> {
         }
     }
 
-    /// The number of triangles.
+    /// Returns the number of triangles.
     pub fn len(&self) -> usize {
         self.triangles.len()
     }
 
-    /// No triangles.
+    /// Returns whether the mesh has no triangles.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 
-    /// The triangles in order.
+    /// Returns an iterator over the triangles in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = MeshTriangle<'a, S>> + use<'a, S> {
         let vertices = self.vertices;
         self.triangles.iter().map(move |corners| MeshTriangle { vertices, corners })
@@ -123,7 +127,9 @@ impl<'a, S: Scalar> IntoIterator for &TriangleMesh<'a, S> {
     }
 }
 
-/// One triangle of a [`TriangleMesh`]: three words that refer to the mesh's buffers.
+/// A triangle of a [`TriangleMesh`].
+///
+/// It consists of three words that refer to the mesh's buffers.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshTriangle<'a, S = f32> {
     vertices: &'a [[S; 3]],
@@ -131,7 +137,7 @@ pub struct MeshTriangle<'a, S = f32> {
 }
 
 impl<S: Scalar> MeshTriangle<'_, S> {
-    /// A copy with its corners' coordinates.
+    /// Returns a triangle with copies of the corners.
     #[inline(always)]
     pub fn triangle(&self) -> Triangle<S> {
         let [a, b, c] = self.corners();
@@ -144,7 +150,7 @@ impl<S: Scalar> Corners for MeshTriangle<'_, S> {
 
     #[inline(always)]
     fn corners(&self) -> [[S; 3]; 3] {
-        // In range: `TriangleMesh::new` is the only maker.
+        // In range: `TriangleMesh::new` checks the indices of every mesh.
         self.corners.map(|i| self.vertices[i as usize])
     }
 }

@@ -1,4 +1,4 @@
-//! The triangle, alone or in a mesh, and the modes of testing it.
+//! The triangle, alone or in a mesh, and the modes of its ray test.
 
 mod mesh;
 mod modes;
@@ -13,8 +13,9 @@ use super::{Intersect, Primitive, SurfacePoint};
 use crate::geometry::{Aabb, Ray, Scalar};
 use crate::leaf::WatertightLeaf;
 
-/// Something with three corners, flat in between: what the modes [`Fast`], [`Watertight`] and [`Precise`]
-/// make a primitive of.
+/// A flat shape with three corners.
+///
+/// The modes [`Fast`], [`Watertight`] and [`Precise`] make a primitive of it.
 ///
 /// ```
 /// use bvhkit::{Bvh, Corners, Ray, Watertight};
@@ -35,19 +36,23 @@ use crate::leaf::WatertightLeaf;
 /// # Ok::<(), bvhkit::BuildError>(())
 /// ```
 pub trait Corners: Sync {
-    /// `f32` or `f64`.
+    /// The scalar of the coordinates: `f32` or `f64`.
     type Scalar: Scalar;
 
-    /// The corners where u = v = 0, u = 1 and v = 1 (see [`Barycentrics`]). Expected to be the same each time.
+    /// Returns the corners where u = v = 0, u = 1 and v = 1 (see [`Barycentrics`]).
+    ///
+    /// It must return the same corners each time.
     fn corners(&self) -> [[Self::Scalar; 3]; 3];
 
-    /// The point of the triangle with these barycentrics, to start rays from: that of a hit by its
-    /// payload, where `ray.at(hit.t)` may be far off the surface.
+    /// Returns the point with the barycentrics `at`, to start rays from.
     ///
-    /// Computed in `f64` for both scalars. The error is one rounding of the position, and 2^18 epsilon of
-    /// `f64` (6e-11) of the triangle's largest extent: enough for triangles 10,000 times as long as wide in
-    /// the modes that decide in `f64` on which side of the triangle a ray starts, [`Watertight`] and
-    /// [`Precise`]. [`Fast`] in `f32` does not, and may hit the triangle again at grazing angles.
+    /// For a hit, `at` is its payload. The point `ray.at(hit.t)` may be far off the surface.
+    ///
+    /// The point is computed in `f64` for both scalars. Its error is one rounding of the position,
+    /// plus 2^18 epsilon of `f64` (6e-11) times the triangle's largest extent. [`Watertight`] and
+    /// [`Precise`] decide in `f64` on which side of the triangle a ray starts. In these modes the
+    /// error is large enough for triangles 10,000 times as long as wide. [`Fast`] in `f32` decides
+    /// in `f32`, and may hit the triangle again at grazing angles.
     fn surface_point(&self, at: Barycentrics<Self::Scalar>) -> SurfacePoint<Self::Scalar> {
         SurfacePoint::of_triangle(self.corners(), at)
     }
@@ -64,7 +69,8 @@ impl<P: Corners + ?Sized> Corners for &P {
 
 /// A triangle that owns its three corners. Both sides are hit.
 ///
-/// By itself it is [`Watertight`]; [`Fast`] and [`Precise`] wrap it: `triangles.iter().map(Precise)`.
+/// By itself it is tested in [`Watertight`] mode. [`Fast`] and [`Precise`] wrap it:
+/// `triangles.iter().map(Precise)`.
 ///
 /// ```
 /// use bvhkit::{Bvh, Ray, Triangle};
@@ -84,8 +90,10 @@ pub struct Triangle<S = f32> {
     pub c: [S; 3],
 }
 
-/// Where on a triangle a hit is: the point (1 - u - v) a + u b + v c, with u, v and 1 - u - v
-/// in [0, 1] up to rounding.
+/// The position of a hit on a triangle.
+///
+/// The hit is the point (1 - u - v) a + u b + v c. The weights u, v and 1 - u - v are in [0,
+/// 1] up to rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Barycentrics<S = f32> {
     /// The weight of corner b.
@@ -95,7 +103,7 @@ pub struct Barycentrics<S = f32> {
 }
 
 impl<S: Scalar> Triangle<S> {
-    /// The triangle with corners `a`, `b`, `c`.
+    /// Creates the triangle with corners `a`, `b` and `c`.
     #[inline(always)]
     pub fn new(a: impl Into<[S; 3]>, b: impl Into<[S; 3]>, c: impl Into<[S; 3]>) -> Self {
         Self { a: a.into(), b: b.into(), c: c.into() }

@@ -1,4 +1,4 @@
-//! How exactly a triangle is tested: a choice by type.
+//! The modes of the ray-triangle test: a type chooses how exact the test is.
 
 use super::sheared::sheared;
 use super::watertight::{bounds, exact_bounds, watertight, watertight_widest};
@@ -9,10 +9,13 @@ use crate::primitive::{Intersect, Primitive};
 
 /// A triangle tested with the least arithmetic.
 ///
-/// A ray aimed at a corner, or at an edge of a sliver, may slip between triangles that meet there, or
-/// be told of a hit a rounding beside one. Products of three lengths are computed: coordinates and
-/// distances are good from about 1e-12 to 1e12 in `f32`, 1e-100 to 1e100 in `f64`; beyond, hits are lost.
-/// `docs/accuracy.md` has the rates and the gain.
+/// A ray aimed at a corner, or at an edge of a sliver, may pass between the triangles that meet
+/// there. It may also be reported to hit a triangle that it passes beside: by a rounding, or, if
+/// the triangle is degenerate, by much more.
+///
+/// The test computes products of three lengths. Coordinates and distances are good from about 1e-12
+/// to 1e12 in `f32`, and 1e-100 to 1e100 in `f64`; beyond, hits are lost. `docs/accuracy.md` has
+/// the error rates and the gain in speed.
 ///
 /// ```
 /// use bvhkit::{Bvh, Fast, Triangle};
@@ -23,33 +26,42 @@ use crate::primitive::{Intersect, Primitive};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fast<P>(pub P);
 
-/// A triangle tested so that no ray slips between it and its neighbours: what [`Triangle`](crate::Triangle)
-/// and [`MeshTriangle`](crate::MeshTriangle) are by themselves.
+/// A triangle tested so that no ray passes between it and its neighbours.
 ///
-/// A ray from inside a closed mesh, whose triangles share the very bits of their corners, hits it, at edges
-/// and corners too; sometimes the neighbour of the triangle that exact arithmetic would name. Inside means
-/// by more than the rounding of the coordinates: each ray sees the corners moved by as much. Of rays that
-/// start within 1e-6 of an edge of the unit cube 0 of 20,000 left it, within 1e-7 17, within 1e-8 881.
+/// By themselves, [`Triangle`](crate::Triangle) and [`MeshTriangle`](crate::MeshTriangle) are
+/// tested in this mode.
 ///
-/// A hit's direction passes the triangle within a few roundings of the distances to its corners. So does the
-/// hit itself, unless the ray lies in the triangle's plane up to rounding: then t is only known to lie between
-/// those of the nearest and the farthest corner, and such a hit may be off by the triangle's size
-/// ([`Precise`] has no such hits). The triangle's box is a few roundings larger than its corners': that is part of
-/// the proof, which is in the source (`primitive/triangle/watertight.rs`).
+/// A ray from inside a closed mesh hits the mesh, at edges and corners too. The triangles must
+/// share the very bits of their corners. Sometimes the hit is on the neighbour of the triangle that
+/// exact arithmetic would name. The origin must be inside by more than the rounding of the
+/// coordinates, since each ray sees the corners moved by as much. Of rays that start within 1e-6 of
+/// an edge of the unit cube, 0 of 20,000 leave it; of rays that start closer, some do (measured:
+/// docs/decisions.md, 30).
 ///
-/// Good for coordinates and distances from about 1e-30 to 1e37 in `f32`, and 1e-100 to 1e100 in `f64`,
-/// and directions of a length in that range, as long as t is in the scalar's range, too. A triangle with two equal corners is never hit, nor is
-/// one whose corners lie on a line, but for rays that pass within those roundings of that line.
+/// The ray of a hit passes the triangle within a few roundings of the distances to its corners. The
+/// point of the hit is as close, unless the ray is in the triangle's plane up to rounding. Then t
+/// is only known to be between those of the nearest and the farthest corner, and the point may be
+/// off by the triangle's size ([`Precise`] has no such hits). The triangle's box is a few roundings
+/// larger than the box of its corners. The proof needs this margin; it is in the source
+/// (`primitive/triangle/watertight.rs`).
 ///
-/// Wraps any triangle of your own that tells its [`Corners`].
+/// Coordinates and distances are good from about 1e-30 to 1e37 in `f32`, and 1e-100 to 1e100 in
+/// `f64`. So are directions of a length in that range, as long as t is in the scalar's range, too.
+/// A triangle with two equal corners is never hit. A triangle whose corners are on a line is hit
+/// only by rays that pass within the same few roundings of that line.
+///
+/// Wraps any triangle of your own that implements [`Corners`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Watertight<P>(pub P);
 
-/// A triangle with `f32` corners, tested in `f64`: watertight (from a billionth of the distance on that
-/// [`Watertight`] needs to an edge), and t, weights and the decision between neighbours are those of exact arithmetic
-/// but for rare roundings of `f64`.
+/// A triangle with `f32` corners, tested in `f64`.
 ///
-/// Good for all coordinates from about 1e-30 to 1e37. The boxes are in `f32`, as for [`Watertight`].
+/// It is watertight, and an origin may be a billion times closer to an edge than in [`Watertight`]
+/// mode. t, the weights and the decision between neighbours are those of exact arithmetic, except
+/// for rare roundings of `f64`.
+///
+/// All coordinates from about 1e-30 to 1e37 are good. The boxes are in `f32`, as
+/// for [`Watertight`].
 ///
 /// ```
 /// use bvhkit::{Bvh, Precise, Ray, TriangleMesh};
@@ -62,18 +74,21 @@ pub struct Watertight<P>(pub P);
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Precise<P>(pub P);
 
-/// The watertight box of any corners, or their own, invalid one.
+/// Returns the watertight box of `corners`, or their own box if it is invalid.
 #[inline(always)]
 fn padded<S: Scalar>(corners: [[S; 3]; 3]) -> Aabb<S> {
     let own = around(corners);
     if own.is_valid() { bounds(corners) } else { own }
 }
 
-/// The box of any corners: quicker than [`Aabb::of_points`] if they are numbers, which most are.
+/// Returns the box of any corners.
+///
+/// It is faster than [`Aabb::of_points`] if all coordinates are finite, as most are.
 #[inline(always)]
 fn around<S: Scalar>(corners: [[S; 3]; 3]) -> Aabb<S> {
     let [a, b, c] = corners;
-    // NaN or infinite if a coordinate is, and at worst if it is none.
+    // NaN or infinite if a coordinate is. Finite coordinates may overflow the sum, which
+    // costs only time.
     let sum = |axis: usize| a[axis] + b[axis] + c[axis];
     if (sum(0) + sum(1) + sum(2)).is_finite() { exact_bounds(corners) } else { Aabb::of_points(corners) }
 }
@@ -205,7 +220,7 @@ mod tests {
 
     const UNIT: Triangle = Triangle { a: [0.0, 0.0, 0.0], b: [1.0, 0.0, 0.0], c: [0.0, 1.0, 0.0] };
 
-    /// The answers of the modes, `f64` data included, with all they hold in `f32`.
+    /// Returns the answers of the modes, and those for `f64` data, as `f32`.
     fn answers(triangle: Triangle, ray: Ray) -> [Option<(f32, f32, f32)>; 4] {
         let prepared = ray;
         let flat = |(t, at): (f32, Barycentrics)| (t, at.u, at.v);
@@ -229,7 +244,7 @@ mod tests {
     #[test]
     fn edges_and_corners_are_inside_and_both_sides_are_hit() {
         for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5), (0.5, 0.0), (0.25, 0.25)] {
-            // A fast hit at an edge has the same t here, since nothing is rounded.
+            // At an edge, a hit of `Fast` has the same t here, since nothing is rounded.
             assert_eq!(answers(UNIT, down(x, y)), [Some((2.0, x, y)); 4]);
             let up = Ray::new([x, y, -3.0], [0.0, 0.0, 1.0]);
             assert_eq!(answers(UNIT, up), [Some((3.0, x, y)); 4]);
@@ -253,7 +268,7 @@ mod tests {
         assert_eq!(answers(UNIT, Ray::new([-1.0, 0.25, 0.0], [1.0, 0.0, 0.0])), [None; 4]);
         let needle = Triangle::new([0.0f32; 3], [1.0, 0.0, 1.0], [2.0, 0.0, 2.0]);
         assert_eq!(answers(needle, down(0.5, 0.0)), [None; 4]);
-        // Equal corners look equal, however the ray is rounded.
+        // Equal corners are equal in the ray's frame too, however the ray is rounded.
         let (p, q) = ([0.1f32, 0.7, 0.3], [1.1, -0.2, 0.9]);
         for corners in [[p, p, q], [p, q, p], [q, p, p], [p, p, p]] {
             for along in [0.0f32, 0.3, 1.0] {
@@ -265,7 +280,7 @@ mod tests {
         }
     }
 
-    /// Inside, at an edge, at a corner, outside, with directions of any length.
+    /// Tests rays inside, at an edge, at a corner and outside, of many lengths.
     #[test]
     fn size_alone_changes_nothing_within_each_modes_range() {
         for exponent in -36..=36 {
@@ -306,7 +321,7 @@ mod tests {
         }
     }
 
-    /// The slope across is too small for all digits of an `f32`, or for any.
+    /// The slope along x is subnormal or zero in `f32`.
     #[test]
     fn a_leaf_of_precise_triangles_loses_no_hit_to_underflow() {
         for (width, distance) in [(1e-29f32, 1e12f32), (1e-29, 1e14), (1e-25, 1e18), (1e-25, 1e20)] {
@@ -327,7 +342,9 @@ mod tests {
         }
     }
 
-    /// All the differences of products are zero once rounded, in `f64`, on the one face ahead of the origin.
+    /// All weights of the only face ahead of the origin round to zero in `f64`.
+    ///
+    /// The weights are differences of products.
     #[test]
     fn a_flat_tetrahedron_around_the_origin_does_not_leak_in_f64() {
         let [a, b] = [-1.667_231_511_108_307_4, -1.562_852_918_119_195_2];

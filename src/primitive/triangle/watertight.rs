@@ -1,28 +1,35 @@
-//! The watertight ray test, and the box that goes with it.
+//! The watertight triangle test, and the box that the test needs.
 //!
 //! # Why no ray slips through
 //!
-//! 1. A corner's place in the ray's frame is rounded, but alike for all triangles that share the corner:
-//!    what the ray meets is some closed mesh of flat triangles, a little off the given one. The ray's origin
-//!    is inside that one too, if it is by more than rounding inside the given one.
-//! 2. The side of an edge is the sign of a difference of two products. Rounding is monotone: the sign of
-//!    the rounded difference is that of the exact one, or zero. With zero counted as inside, every
-//!    triangle of the mesh of 1 that holds the ray's point is hit, if it has an area, which is looked at
-//!    twice where rounding makes it zero; and in a closed mesh around the ray's origin one that has an area
-//!    does, since those without add nothing to what the others cover.
-//! 3. Its own box is met (see [`bounds`]), so the tree and the naive loop both accept it. This takes a ray that
-//!    crosses the triangle's plane: of random triangles and rays in their planes up to rounding, the box was missed
-//!    by 18 of 431,965 hits. No leak was found that way, in a hundred million rays or in slabs of 3e-7.
+//! 1. A corner's position in the ray's frame is rounded, but in the same way for all triangles
+//!    that share the corner. So the ray meets some closed mesh of flat triangles, a little off
+//!    the given mesh. If the ray's origin is inside the given mesh by more than rounding, it is
+//!    inside that mesh too.
+//! 2. The side of an edge is the sign of a difference of two products. Rounding is monotone: the
+//!    sign of the rounded difference is that of the exact one, or zero. Zero counts as inside. So
+//!    every triangle of the mesh of step 1 that contains the ray's point is hit, if it has an area.
+//!    An area that rounds to zero is computed again. In a closed mesh around the ray's origin, some
+//!    triangle with an area contains the ray's point, since triangles without area add nothing to
+//!    the part that the others cover.
+//! 3. The ray meets the triangle's own box (see [`bounds`]), so the tree and the naive loop both
+//!    accept the hit. This requires that the ray crosses the triangle's plane: of random triangles
+//!    and rays in their planes up to rounding, 18 of 431,965 hits miss the box. No leak was found
+//!    that way (measured: docs/decisions.md, 29).
 
 use super::Barycentrics;
 use super::sheared::{Sight, is_outside};
 use crate::geometry::{Aabb, Ray, RayFrame, Scalar, cross, dot, max, min};
 
-/// As [`sheared`], but what rounding leaves open is computed once more in the wide scalar: a difference that is
-/// zero, as Woop, Benthin and Wald do; an area out of the range; and t where its sign is in doubt, so that a
-/// ray which starts a few roundings from a triangle is told on which side it does.
+/// Tests a triangle so that no ray slips through.
 ///
-/// There is none wider than `f64`: see [`watertight_widest`].
+/// The first test is that of [`sheared`](super::sheared::sheared). Where it leaves something open,
+/// a second test follows. The second test is in the wide scalar. It decides three cases: a
+/// difference that is zero, as Woop, Benthin and Wald do; an area or a volume out of the range; and
+/// a t whose sign is in doubt. So the test knows on which side of a triangle a ray starts, even if
+/// the ray starts a few roundings from the triangle.
+///
+/// No scalar is wider than `f64`: see [`watertight_widest`].
 #[inline(always)]
 pub(super) fn watertight<S: Scalar>(corners: [[S; 3]; 3], ray: &Ray<S>) -> Option<(S, Barycentrics<S>)> {
     let shear = &RayFrame::of(ray);
@@ -39,15 +46,19 @@ pub(super) fn watertight<S: Scalar>(corners: [[S; 3]; 3], ray: &Ray<S>) -> Optio
     }
 }
 
-/// Neither so large nor so small that a part of it may have left the range.
+/// Returns whether the size of `x` is between 1 / `large` and `large`.
+///
+/// Then no part of `x` was so large or so small that it left the range.
 #[inline(always)]
 fn is_within<S: Scalar>(x: S, large: S) -> bool {
     let x = x.abs();
     x > S::ONE / large && x < large
 }
 
-/// The same in the widest scalar: where rounding leaves something open, what it left out of the products is
-/// added.
+/// Tests a triangle in the widest scalar.
+///
+/// Where rounding leaves something open, the parts of the products that were
+/// rounded away are added.
 #[inline(always)]
 pub(super) fn watertight_widest<S: Scalar>(
     corners: [[S; 3]; 3],
@@ -62,7 +73,9 @@ pub(super) fn watertight_widest<S: Scalar>(
     }
 }
 
-/// Rounding has left open neither whether the ray's point is inside nor the sign of t.
+/// Returns whether rounding leaves nothing open.
+///
+/// Then the ray's point is surely inside the triangle, and the sign of t is known.
 #[inline(always)]
 fn is_sure<S: Scalar>(sight: &Sight<S>) -> bool {
     let ([a, b, c], [x, y, z]) = (sight.weights, sight.corners);
@@ -70,8 +83,10 @@ fn is_sure<S: Scalar>(sight: &Sight<S>) -> bool {
     is_inside && (is_ahead(z) || sight.volume.abs() > doubt(x, y, z))
 }
 
-/// The depth of the hit of a triangle whose corners are at `x`, `y` and `z` in the ray's frame; none if the ray
-/// passes outside, or sees no area.
+/// Returns the depth and the weights of the hit, from exact products.
+///
+/// The arguments are the corners' first, second and third coordinates in the ray's frame. Returns
+/// `None` if the ray passes outside, or if the triangle has no area in the frame.
 #[cold]
 #[inline(never)]
 fn settle_widest<S: Scalar>([x, y, z]: [[S; 3]; 3]) -> Option<(S, Barycentrics<S>)> {
@@ -88,24 +103,25 @@ fn settle_widest<S: Scalar>([x, y, z]: [[S; 3]; 3]) -> Option<(S, Barycentrics<S
     let depth = if is_within(area, S::LARGE_AREA) {
         (a * z[0] + b * z[1] + c * z[2]) / area
     } else {
-        // Divided first: what is left of products may be tiny.
+        // Divided first: weights that consist of the rests of products may be tiny.
         a / area * z[0] + at.u * z[1] + at.v * z[2]
     };
     Some((depth, at))
 }
 
-/// All corners are, and so the hit is.
+/// Returns whether all corners, and so the hit, are ahead of the origin.
 #[inline(always)]
 fn is_ahead<S: Scalar>([a, b, c]: [S; 3]) -> bool {
     min(min(a, b), c) > S::ZERO
 }
 
-/// In epsilons.
+/// The factor of the error bound `doubt`, in epsilons.
 pub(crate) const DOUBT: f64 = 40.0;
 
-/// More than the rounding error of the volume (x cross y) . z: x and y are each off by up to 2 epsilon times
-/// the sum of themselves and z, and each product by some more. In 20,000,000 random cases the error was at most a
-/// sixth of it.
+/// Returns a bound above the rounding error of the volume (x cross y) . z.
+///
+/// x and y are each off by up to 2 epsilon times the sum of themselves and z, and each product by
+/// some more. In 20,000,000 random cases the error was at most a sixth of the bound.
 #[inline(always)]
 fn doubt<S: Scalar>(x: [S; 3], y: [S; 3], z: [S; 3]) -> S {
     let largest = |[a, b, c]: [S; 3]| max(max(a.abs(), b.abs()), c.abs());
@@ -113,13 +129,17 @@ fn doubt<S: Scalar>(x: [S; 3], y: [S; 3], z: [S; 3]) -> S {
     S::from_f64(DOUBT) * S::EPSILON * z * (z * (x + y) + x * y)
 }
 
-/// The hit of a triangle whose corners are at `x` and `y` in the ray's frame, computed in the wide scalar; none
-/// if the ray passes outside, or sees no area.
+/// Returns the hit of a triangle, computed in the wide scalar.
 ///
-/// Whether it is hit is decided by its place in the frame, for its neighbours' sake. But t is that of its true
-/// plane, no nearer than the nearest corner and no farther than the farthest, for the sake of rays that start on
-/// the triangle. For a ray in the plane that says little; t from the weights in the frame would be within rounding there,
-/// at the price of 28 self-hits of 19,980 rays from triangles a million times their size from the origin.
+/// `xy` holds the corners' first and second coordinates in the ray's frame. Returns `None` if the
+/// ray passes outside, or if the triangle has no area in the frame.
+///
+/// The rounded corners in the frame decide whether the triangle is hit, so that its neighbours
+/// agree. But t is that of the triangle's true plane, no nearer than the nearest corner and no
+/// farther than the farthest, for rays that start on the triangle. For a ray in the plane, this
+/// t says little. There, t from the weights in the frame would be right within rounding. But it
+/// would cost 28 self-hits of 19,980 rays from triangles that are a million times their size
+/// from the origin.
 #[cold]
 #[inline(never)]
 fn settle<S: Scalar>(xy: [[S; 3]; 2], corners: [[S; 3]; 3], ray: &Ray<S>) -> Option<(S, Barycentrics<S>)> {
@@ -135,28 +155,34 @@ fn settle<S: Scalar>(xy: [[S; 3]; 2], corners: [[S; 3]; 3], ray: &Ray<S>) -> Opt
     Some((S::narrow(t), Barycentrics { u: S::narrow(b / area), v: S::narrow(c / area) }))
 }
 
-/// The third coordinate at which the ray meets the triangle's plane, but no farther than the corners'.
+/// Returns the depth at which the ray meets the triangle's plane.
+///
+/// The depth is the third coordinate in the ray's frame, clamped to the range of the
+/// corners' depths.
 fn plane_depth<S: Scalar>(corners: [[S; 3]; 3], shear: &RayFrame<S>) -> S {
     let [x, y, z] = shear.apply(corners);
     let weights = cross(x, y);
     let [a, b, c] = weights;
     let depth = dot(weights, z) / (a + b + c);
     let [a, b, c] = z;
-    // A ray in the plane makes a NaN, which is left out.
+    // A ray in the plane gives a NaN, which `max` leaves out.
     min(max(depth, min(min(a, b), c)), max(max(a, b), c))
 }
 
-/// The box of a triangle, larger than its corners' by 4 epsilon of its largest extent and one rounding
-/// of the coordinate: what the triangle in the ray's frame may reach out of it.
+/// Returns the box of a triangle, larger than the box of its corners.
 ///
-/// Let u be half an epsilon, s the largest extent, h the point of the ray (relative to its origin) that the test
-/// calls hit. Along an axis x that is not the ray's largest, a corner A has its place x dz - z dx rounded by up to
-/// 2 u |A.x dz| + 2 u |A.z dx| + u |x dz - z dx|: in units of length, since |A.x| <= |h.x| + s, and the same of
-/// A.z dx / dz, by no more than 4 u |h.x| + 6 u s. The second part is less than 4 epsilon s, the first is covered by
-/// the padding of the slab test (see `Slabs`): so the ray meets the box. Underflow aside: coordinates must be some
-/// 2^24 times the smallest normal number, or zero.
+/// The margin is 4 epsilon of the largest extent, plus an epsilon of the coordinate. In the ray's
+/// frame, the triangle may reach that far out of the box of its corners.
 ///
-/// For valid corners. At the end of the range the margin is cut off.
+/// Let u be half an epsilon, s the largest extent, and h the point of the ray (relative to its
+/// origin) that the test calls hit. Along an axis x that is not the ray's largest, the position
+/// x dz - z dx of a corner A is rounded by up to 2 u |A.x dz| + 2 u |A.z dx| + u |x dz - z dx|. We
+/// have |A.x| <= |h.x| + s, and the same bound for A.z dx / dz. So the rounding is at most
+/// 4 u |h.x| + 6 u s in units of length. The second part is less than 4 epsilon s. The padding of
+/// the slab test (see `Slabs`) covers the first part. So the ray meets the box. Underflow is
+/// excluded: coordinates must be at least some 2^24 times the smallest normal number, or zero.
+///
+/// The corners must be valid. At the end of the scalar's range the margin is cut off.
 #[inline(always)]
 pub(super) fn bounds<S: Scalar>(corners: [[S; 3]; 3]) -> Aabb<S> {
     let mut padded = exact_bounds(corners);
@@ -170,7 +196,7 @@ pub(super) fn bounds<S: Scalar>(corners: [[S; 3]; 3]) -> Aabb<S> {
     padded
 }
 
-/// The corners' own box, for valid ones.
+/// Returns the exact box of the corners, which must be valid.
 #[inline(always)]
 pub(super) fn exact_bounds<S: Scalar>([a, b, c]: [[S; 3]; 3]) -> Aabb<S> {
     let each = |f: fn(S, S) -> S| [f(f(a[0], b[0]), c[0]), f(f(a[1], b[1]), c[1]), f(f(a[2], b[2]), c[2])];

@@ -1,26 +1,26 @@
-//! The static filter: what plain `f64` arithmetic decides beyond doubt.
+//! The static filter: cases that plain `f64` arithmetic decides beyond doubt.
 
 use super::volumes::{cross, dot, sub};
 use crate::geometry::{Ray, Scalar};
 use crate::primitive::Triangle;
 
-/// Whether the ray's line surely passes outside. `false` is no answer.
+/// Whether the ray's line surely passes outside; `false` decides nothing.
 pub(super) fn surely_misses<S: Scalar>(triangle: &Triangle<S>, ray: &Ray<S>) -> bool {
     let [u, v, w] = sure_signs(triangle, ray);
-    // Without branches, which nothing could predict.
+    // Without branches, since nothing could predict them.
     (u.max(v).max(w) > 0) & (u.min(v).min(w) < 0)
 }
 
-/// The signs of U, V, W: 1 or -1 where they are beyond doubt, else 0.
+/// Returns the signs of U, V, W: 1 or -1 where they are beyond doubt, else 0.
 ///
 /// # The bound
 ///
-/// U = d . (c x b) is a sum of products d c b, with c and b relative to the origin. In `f64`, each passes
-/// through 7 roundings: one for each of the two differences (`f32` coordinates too, when their
-/// exponents are far apart), two products, the cross product's difference, and at most two sums. A
-/// rounding changes its result by at most u = 2^-53 of it, so that with P the sum of the exact
-/// products' sizes, the error is at most ((1 + u)^7 - 1) P. The same sum computed of sizes, p, is
-/// at least (1 - u)^7 P, which makes the error at most
+/// U = d . (c x b) is a sum of products d c b, with c and b relative to the origin. In `f64`, each
+/// product passes through 7 roundings: one for each of the two differences (for `f32` coordinates
+/// too, if their exponents are far apart), two products, the difference in the cross product, and
+/// at most two sums. A rounding changes its result by at most u = 2^-53 of it. Let P be the sum of
+/// the exact products' sizes. Then the error is at most ((1 + u)^7 - 1) P. Let p be the same sum of
+/// sizes, as computed. It is at least (1 - u)^7 P, so the error is at most
 ///
 /// ```text
 /// ((1 + u)^7 - 1) / (1 - u)^7 p < 8 u p
@@ -28,11 +28,11 @@ pub(super) fn surely_misses<S: Scalar>(triangle: &Triangle<S>, ray: &Ray<S>) -> 
 ///
 /// and 8 u p is computed without rounding.
 ///
-/// All this holds while nothing overflows, and nothing that counts underflows. Differences and
-/// directions in [2^-300, 2^300] or zero see to it: a difference of two products of theirs is zero or
-/// no smaller than an ulp of 2^-600, its product with a third still has all its digits. For `f32` data
-/// that is no restriction; other `f64` data is left undecided. A corner that is not finite makes a
-/// bound of infinity or NaN in two of the three, which nothing exceeds.
+/// All this holds while nothing overflows, and nothing that counts underflows. That is so if
+/// differences and directions are zero or in [2^-300, 2^300]: a difference of two products of
+/// theirs is zero or no smaller than an ulp of 2^-600, and its product with a third still has all
+/// its digits. For `f32` data that is no restriction. Other `f64` data is left undecided. If a
+/// corner is not finite, two of the three bounds are infinite or NaN, and no value exceeds those.
 #[inline(always)]
 fn sure_signs<S: Scalar>(triangle: &Triangle<S>, ray: &Ray<S>) -> [i8; 3] {
     let wide = |p: [S; 3]| p.map(S::to_f64);
@@ -42,11 +42,11 @@ fn sure_signs<S: Scalar>(triangle: &Triangle<S>, ray: &Ray<S>) -> [i8; 3] {
     if S::ZERO.next_up().to_f64() < SMALL && !in_range([a, b, c, d].as_flattened()) {
         return [0; 3];
     }
-    // Three calls: an array's map is not inlined, and takes four times as long (63 ns, not 16).
+    // Three calls: an array's `map` is not inlined, and takes four times as long (63 ns, not 16).
     [sure_sign(c, b, d), sure_sign(a, c, d), sure_sign(b, a, d)]
 }
 
-/// The sign of d . (p x q).
+/// Returns the sign of d . (p x q): 1 or -1 where it is beyond doubt, else 0.
 #[inline(always)]
 fn sure_sign(p: [f64; 3], q: [f64; 3], d: [f64; 3]) -> i8 {
     let value = dot(&d, &cross(&p, &q));
@@ -54,18 +54,19 @@ fn sure_sign(p: [f64; 3], q: [f64; 3], d: [f64; 3]) -> i8 {
     i8::from(value > bound) - i8::from(value < -bound)
 }
 
-/// Whether all are of a size in [`SMALL`, `LARGE`] or zero.
+/// Whether the sizes of all values are zero or in [`SMALL`, `LARGE`].
 fn in_range(values: &[f64]) -> bool {
     values.iter().all(|x| *x == 0.0 || (SMALL..=LARGE).contains(&x.abs()))
 }
 
 /// 8 u.
 const BOUND: f64 = 4.0 * f64::EPSILON;
-/// 2^-300 and 2^300.
+/// 2^-300.
 const SMALL: f64 = f64::from_bits((1023 - 300) << 52);
+/// 2^300.
 const LARGE: f64 = f64::from_bits((1023 + 300) << 52);
 
-/// The cross product, but with the sizes of all products added.
+/// Returns the cross product, with the sizes of all products added.
 #[inline(always)]
 fn sum_of_sizes(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     let component = |i: usize, j: usize| (a[i] * b[j]).abs() + (a[j] * b[i]).abs();
@@ -79,7 +80,9 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
-    /// How many of the signs are decided, of how many; every one of them as the integers have it.
+    /// Counts the decided signs and all signs, and checks those decided.
+    ///
+    /// The integers tell the true signs.
     fn decided<S: Scalar>(cases: impl Iterator<Item = (Triangle<S>, Ray<S>)>) -> (usize, usize) {
         let (mut decided, mut all) = (0, 0);
         for (triangle, ray) in cases {
@@ -92,8 +95,10 @@ mod tests {
         (decided, all)
     }
 
-    /// Triangles of coordinates from a source, and rays from another such point at the middle of an
-    /// edge (rounded), at a corner, at a point of the inside, or at nothing.
+    /// Returns a triangle with coordinates from a source, and a ray aimed at it.
+    ///
+    /// The ray begins at another point of the source. Its aim is the middle of an edge (rounded), a
+    /// corner, a point inside, or nothing.
     fn aimed<S: Scalar>(mut coordinate: impl FnMut() -> f64, aim: [f64; 3]) -> (Triangle<S>, Ray<S>) {
         let mut point = || [0; 3].map(|_| S::from_f64(coordinate()));
         let (a, b, c, origin) = (point(), point(), point(), point());
@@ -107,7 +112,7 @@ mod tests {
     const INSIDE: [f64; 3] = [0.25, 0.25, 0.5];
     const NOTHING: [f64; 3] = [3.0, -4.0, 5.0];
 
-    /// Cases of coordinates from -1 to 1.
+    /// Cases with coordinates from -1 to 1.
     fn ordinary<S: Scalar>(aim: [f64; 3]) -> impl Iterator<Item = (Triangle<S>, Ray<S>)> {
         let mut rng = Pcg64Mcg::seed_from_u64(1);
         (0..20_000).map(move |_| aimed(|| rng.random_range(-1.0..1.0), aim))
@@ -121,7 +126,8 @@ mod tests {
             let (sure, all) = decided(ordinary::<f64>(aim));
             assert!(sure * 1000 > all * 999, "{sure} of {all}");
         }
-        // One of three edges, two that meet in a corner: with f64 data their functions are all rounding.
+        // At one of three edges, or at two that meet in a corner: with `f64` data the functions of
+        // these edges are all rounding.
         for (aim, edges) in [(EDGE, 1), (CORNER, 2)] {
             let (sure, all) = decided(ordinary::<f64>(aim));
             let open = all - sure;

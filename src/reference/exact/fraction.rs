@@ -9,7 +9,9 @@ use dashu_int::{IBig, UBig};
 
 /// An exact rational number: the t of an exact hit.
 ///
-/// Equal and ordered by value, and shown in lowest terms:
+/// Fractions compare by value, and are displayed in lowest terms.
+///
+/// # Examples
 ///
 /// ```
 /// use bvhkit::{Ray, Triangle, reference::exact};
@@ -23,41 +25,44 @@ use dashu_int::{IBig, UBig};
 /// ```
 #[derive(Clone)]
 pub struct Fraction {
-    // The value is numerator / denominator * 2^exponent; the denominator is not zero. Not reduced:
-    // common divisors cost more to find than to carry.
+    // The value is numerator / denominator * 2^exponent. The denominator is not zero. Fractions are
+    // not reduced: common divisors cost more to find than to carry.
     pub(super) numerator: IBig,
     pub(super) denominator: UBig,
     pub(super) exponent: i32,
 }
 
 impl Fraction {
-    /// numerator / denominator * 2^exponent; `None` for a denominator of zero.
+    /// Returns numerator / denominator * 2^exponent; `None` for a denominator of zero.
     pub(super) fn new(numerator: IBig, denominator: IBig, exponent: i32) -> Option<Self> {
         let (sign, denominator) = denominator.into_parts();
         (!denominator.is_zero()).then(|| Self { numerator: numerator * sign, denominator, exponent })
     }
 
-    /// The value of a finite number.
+    /// Returns the value of a finite number.
     pub(super) fn of(x: f64) -> Self {
         let (m, exponent) = decompose(x);
         Self { numerator: m.into(), denominator: UBig::ONE, exponent }
     }
 
-    /// The nearest `f64`: [`to_scalar`](Self::to_scalar).
+    /// Returns the nearest `f64`, as [`to_scalar`](Self::to_scalar) does.
     pub fn to_f64(&self) -> f64 {
         self.nearest::<f64>()
     }
 
-    /// The nearest `f32` or `f64`, of two equally near ones that with the even last bit, as IEEE 754
-    /// rounds: subnormal numbers are rounded to their coarser spacing, what is too small to zero with the
-    /// sign kept, what is too large to infinity.
+    /// Returns the nearest `f32` or `f64`, as IEEE 754 rounds.
+    ///
+    /// Of two equally near numbers it is the one with the even last bit. Subnormal numbers are
+    /// rounded to their coarser spacing. A value that is too small becomes zero with the sign kept,
+    /// and one that is too large becomes infinity.
     pub fn to_scalar<S: Scalar>(&self) -> S {
-        // Rounded to a number of `S` already.
+        // The value is a number of `S` already.
         S::from_f64(self.nearest::<S>())
     }
 
-    /// Compares with a number, exactly. Infinities lie beyond every fraction, and so does NaN, on the
-    /// side of +infinity.
+    /// Compares with a number, exactly.
+    ///
+    /// -infinity is less than every fraction. Infinity and NaN are greater.
     pub fn cmp_scalar<S: Scalar>(&self, x: S) -> Ordering {
         let x = x.to_f64();
         if x.is_finite() {
@@ -69,13 +74,16 @@ impl Fraction {
         }
     }
 
-    /// The error of `t`, taken for this number, in ulps: (t - exact) / ulp, computed exactly and then
-    /// rounded to the nearest `f64`. At most 0.5 in size for the nearest `S`.
+    /// Returns the error of `t` as an approximation of this number, in ulps.
     ///
-    /// The ulp is the spacing of the numbers of `S` at the exact value: the distance between the two
-    /// neighbours that it lies between. Where it is a power of two itself, on the border of two
-    /// spacings, that on the far side of zero, the wider one. Near zero and at zero it is the smallest
-    /// positive number. Beyond the largest number it is what it would be if the exponents went on.
+    /// This is (t - exact) / ulp, computed exactly and then rounded to the nearest `f64`. Its size
+    /// is at most 0.5 for the nearest `S`.
+    ///
+    /// The ulp is the spacing of the numbers of `S` at the exact value: the distance between
+    /// the two neighbours on both sides of it. If the exact value is a power of two, two
+    /// spacings meet there, and the ulp is the wider one, on the side away from zero. At and
+    /// near zero it is the smallest positive number. Beyond the largest number it is computed
+    /// as if the exponents went on.
     ///
     /// An infinite or NaN `t` is returned as it is.
     pub fn ulps_from<S: Scalar>(&self, t: S) -> f64 {
@@ -93,7 +101,7 @@ impl Fraction {
         Self { numerator: left - right, denominator: &self.denominator * &other.denominator, exponent }
     }
 
-    /// Both numerators over the product of the denominators, and their common exponent.
+    /// Returns both numerators over the product of denominators, and their exponent.
     fn over_common_denominator(&self, other: &Self) -> (IBig, IBig, i32) {
         let exponent = self.exponent.min(other.exponent);
         let left = (&self.numerator * &other.denominator) << (self.exponent - exponent) as usize;
@@ -123,8 +131,10 @@ impl PartialEq for Fraction {
 
 impl Eq for Fraction {}
 
-/// Exact and in lowest terms, with a positive denominator: `-3/4`, or `5` for a whole number. Both
-/// parts are decimal integers, of as many digits as it takes.
+/// Shows the value exactly, in lowest terms, with a positive denominator.
+///
+/// It is for example `-3/4`, or `5` for a whole number. Both parts are decimal integers with as
+/// many digits as needed.
 impl fmt::Display for Fraction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let shift = self.exponent.unsigned_abs() as usize;
@@ -197,7 +207,7 @@ mod tests {
     #[test]
     fn ulps_are_those_at_the_exact_value() {
         let u = f64::from(f32::EPSILON);
-        // The spacing of f32 from 1 to 2 is u, below 1 half of that.
+        // The spacing of `f32` from 1 to 2 is u, and below 1 it is half of that.
         assert_eq!(fraction(1, 1, 0).ulps_from(1.0f32 + f32::EPSILON), 1.0);
         assert_eq!(fraction(1, 1, 0).ulps_from(1.0f32.next_down()), -0.5);
         assert_eq!(fraction(3, 4, 0).ulps_from(1.0f32), 0.5 / u);

@@ -2,11 +2,11 @@
 
 use core::ops::Shl;
 
-/// A finite number as (m, e) with the value m * 2^e and m odd; zero as (0, 0).
+/// Returns (m, e) for the finite number m * 2^e, with m odd; (0, 0) for zero.
 pub(super) fn decompose(x: f64) -> (i64, i32) {
     let bits = x.to_bits();
     let fraction = (bits & ((1 << 52) - 1)) as i64;
-    // Subnormal numbers share the exponent of the smallest normal ones and lack the leading one.
+    // Subnormal numbers have the exponent of the smallest normal ones, without the leading one.
     let (m, e) = match (bits >> 52 & 0x7ff) as i32 {
         0 => (fraction, -1074),
         exponent => (fraction | 1 << 52, exponent - 1075),
@@ -19,8 +19,10 @@ pub(super) fn decompose(x: f64) -> (i64, i32) {
     (if x < 0.0 { -m } else { m }, e + zeros as i32)
 }
 
-/// Finite numbers as integers times one power of two: the largest that leaves all of them whole, so
-/// that ordinary numbers make small integers.
+/// Finite numbers as integers times one power of two.
+///
+/// This is the largest power that leaves all of them whole, so that ordinary numbers
+/// make small integers.
 pub(super) struct Integers<const N: usize> {
     parts: [(i64, i32); N],
     /// The unit is 2^exponent.
@@ -43,7 +45,7 @@ impl<const N: usize> Integers<N> {
         Self { parts, exponent, bits: top - exponent }
     }
 
-    /// The integers, as a type that holds `bits` bits and a sign.
+    /// Returns the integers, as a type that holds `bits` bits and a sign.
     pub fn to_array<I: From<i64> + Shl<usize, Output = I>>(&self) -> [I; N] {
         self.parts.map(|(m, e)| match m {
             0 => I::from(0),

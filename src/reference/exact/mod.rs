@@ -1,13 +1,16 @@
-//! The exact oracle: what a ray hits in exact arithmetic, to test any ray-triangle test or tree with.
+//! The exact oracle: the hits of a ray in exact arithmetic.
 //!
-//! The naive loop tells whether a tree passes something over; this tells whether the answer is true.
-//! Coordinates are taken for the numbers that they are, of any size, and nothing is rounded:
+//! It is for tests of any ray-triangle test or tree. The naive loop tells whether a tree misses a
+//! hit; this module tells whether an answer is true. Coordinates are taken as the exact numbers
+//! that they are, of any size, and nothing is rounded:
 //!
 //! - edges and corners are inside;
-//! - a ray in the triangle's plane misses, and so does any ray a triangle without area;
-//! - t lies in the closed interval [`t_min`, `t_max`], whose ends may be infinite;
-//! - an invalid ray (see [`Ray::validate`]) hits nothing, a triangle with a corner that is NaN or
-//!   infinite is not hit.
+//! - a ray in the triangle's plane misses, and every ray misses a triangle without area;
+//! - t is in the closed interval [`t_min`, `t_max`], whose ends may be infinite;
+//! - an invalid ray (see [`Ray::validate`]) hits nothing, and a triangle with a corner that is NaN
+//!   or infinite is not hit.
+//!
+//! # Examples
 //!
 //! ```
 //! use bvhkit::{Bvh, Ray, Triangle, reference::exact};
@@ -30,19 +33,21 @@
 //!
 //! # Method
 //!
-//! With the corners a, b, c relative to the origin and the direction d, the ray's line passes
-//! the edges on the sides that the signs of
+//! Let a, b, c be the corners relative to the origin, and d the direction. The signs of
 //!
 //! ```text
 //! U = d . (c x b)    V = d . (a x c)    W = d . (b x a)
 //! ```
 //!
-//! tell. It meets the triangle where no two of them have opposite signs and U + V + W, which is -n . d of
-//! the normal n, is not zero; there t = a . (c x b) / (U + V + W). These are the scaled barycentrics of
-//! Woop, Benthin and Wald (Watertight Ray/Triangle Intersection, JCGT 2013) before their shear. As in
-//! Shewchuk (Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, 1997)
-//! a filter of plain `f64` comes first, and what its error bound leaves open is computed exactly; here
-//! in integers, since an exponent range as wide as that of `f64` would overflow Shewchuk's expansions.
+//! tell on which sides of the edges the ray's line passes. The line meets the triangle where no two
+//! of them have opposite signs and U + V + W is not zero. That sum is -n . d, where n is the
+//! normal. There t = a . (c x b) / (U + V + W). These are the scaled barycentrics of Woop, Benthin
+//! and Wald (Watertight Ray/Triangle Intersection, JCGT 2013) before their shear.
+//!
+//! As in Shewchuk (Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
+//! Predicates, 1997), a filter in plain `f64` comes first, and the cases that its error bound
+//! leaves open are computed exactly. Here this is done in integers, since an exponent range as wide
+//! as that of `f64` would overflow Shewchuk's expansions.
 
 mod filter;
 mod fraction;
@@ -59,16 +64,20 @@ use crate::primitive::Triangle;
 use alloc::vec::Vec;
 use volumes::Volumes;
 
-/// An exact hit. Ordered by t, equal ones by index.
+/// An exact hit, ordered by t, equal ones by index.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ExactHit {
-    /// Where on the ray, in lengths of its direction.
+    /// The t of the hit, in lengths of the ray's direction.
     pub t: Fraction,
-    /// Which triangle, by its place in the input.
+    /// The triangle's index in the input.
     pub index: usize,
 }
 
-/// The exact t at which the ray meets the triangle, within the ray's interval; `None` for a miss.
+/// Returns the exact t at which the ray meets the triangle; `None` for a miss.
+///
+/// A t outside of the ray's interval is a miss.
+///
+/// # Examples
 ///
 /// ```
 /// use bvhkit::{Ray, Triangle, reference::exact};
@@ -89,17 +98,17 @@ pub fn intersect<S: Scalar>(triangle: &Triangle<S>, ray: &Ray<S>) -> Option<Frac
     (t.cmp_scalar(ray.t_min).is_ge() && t.cmp_scalar(ray.t_max).is_le()).then_some(t)
 }
 
-/// All hits in the ray's interval, by increasing exact t, equal ones by index.
+/// Returns all hits in the ray's interval, by exact t, equal ones by index.
 pub fn hits<S: Scalar>(triangles: &[Triangle<S>], ray: &Ray<S>) -> Vec<ExactHit> {
     let mut hits: Vec<_> = all(triangles, ray).collect();
     hits.sort();
     hits
 }
 
-/// All triangles that share the exactly smallest t in the ray's interval, by index; empty for a miss.
+/// Returns all triangles with the exactly smallest t, by index; empty for a miss.
 ///
-/// Of two that meet in an edge, a ray through that edge hits both at one t, and a rounded test may
-/// answer with either.
+/// Only hits in the ray's interval count. If two triangles share an edge, a ray through that edge
+/// hits both at one t, and a rounded test may answer with either.
 pub fn closest_hits<S: Scalar>(triangles: &[Triangle<S>], ray: &Ray<S>) -> Vec<ExactHit> {
     let mut closest: Vec<ExactHit> = Vec::new();
     for hit in all(triangles, ray) {
@@ -116,21 +125,25 @@ pub fn closest_hits<S: Scalar>(triangles: &[Triangle<S>], ray: &Ray<S>) -> Vec<E
     closest
 }
 
-/// Whether anything is hit in the ray's interval; stops at the first that is.
+/// Whether anything is hit in the ray's interval; stops at the first hit.
 pub fn any_hit<S: Scalar>(triangles: &[Triangle<S>], ray: &Ray<S>) -> bool {
     all(triangles, ray).next().is_some()
 }
 
-/// By how much of the triangle the ray's line passes outside, whatever the interval: at most 0 for a
-/// line that meets the triangle, -1/3 in its middle.
+/// Returns how far outside of the triangle the ray's line passes, as a part of it.
 ///
-/// The exact -min(U, V, W) / |U + V + W|, signs turned so that the sum is positive, rounded to the
-/// nearest `f64`: the largest of the negated barycentric coordinates of the point where the line
-/// meets the plane. A rounded test that reports a hit at 1e-7 has the point outside by that part of
-/// the triangle's height over the nearest edge.
+/// It is at most 0 for a line that meets the triangle, and -1/3 for one through its middle. The
+/// ray's interval does not matter.
 ///
-/// `None` if the line is parallel to the plane, the triangle has no area or a corner that is not
-/// finite, or the ray is invalid.
+/// The result is the exact -min(U, V, W) / |U + V + W|, with signs turned so that the sum is
+/// positive, rounded to the nearest `f64`. This is the largest of the negated barycentric
+/// coordinates of the point where the line meets the plane. If a rounded test reports a hit at
+/// 1e-7, the point is outside by that part of the triangle's height over the nearest edge.
+///
+/// Returns `None` if the line is parallel to the plane, if the triangle has no area or a corner
+/// that is not finite, or if the ray is invalid.
+///
+/// # Examples
 ///
 /// ```
 /// use bvhkit::{Ray, Triangle, reference::exact};
@@ -145,7 +158,7 @@ pub fn edge_slack<S: Scalar>(triangle: &Triangle<S>, ray: &Ray<S>) -> Option<f64
     Some(Volumes::exact(triangle, ray)?.slack()?.to_f64())
 }
 
-/// The hits in the order of the input.
+/// Returns the hits in the order of the input.
 fn all<S: Scalar>(triangles: &[Triangle<S>], ray: &Ray<S>) -> impl Iterator<Item = ExactHit> {
     let hit = |(index, triangle)| Some(ExactHit { t: intersect(triangle, ray)?, index });
     triangles.iter().enumerate().filter_map(hit)

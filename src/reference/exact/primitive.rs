@@ -5,16 +5,20 @@ use crate::geometry::{Aabb, Ray, Scalar};
 use crate::leaf::OneByOne;
 use crate::primitive::{Corners, Intersect, Primitive, Triangle, Watertight};
 
-/// A triangle tested in exact arithmetic: for tests with more triangles than [`hits`](super::hits) and its
-/// like can ask one by one. Some hundred times slower than the modes that renderers use.
+/// A triangle that is tested in exact arithmetic.
+///
+/// It is for tests with more triangles than [`hits`](super::hits) and the other functions can test
+/// one by one. It is about a hundred times slower than the modes that renderers use.
 ///
 /// The t of a hit is the exact one, rounded to the nearest number. Rounding keeps the order: of the
-/// triangles whose rounded t is the smallest, at least one is exactly the nearest, and
-/// [`closest_hits`](super::closest_hits) of those few tells which.
+/// triangles whose rounded t is the smallest, at least one is exactly the nearest. Use
+/// [`closest_hits`](super::closest_hits) of those few to find out which.
 ///
-/// Its box is that of [`Watertight`], a little larger than the triangle. The ray's way through it is
-/// rounded, so all said here holds for coordinates and distances within that mode's range, and a t
+/// Its box is that of [`Watertight`], a little larger than the triangle. The test of that box is
+/// rounded. So all this holds for coordinates and distances within the range of that mode, and a t
 /// beyond the largest number is no hit.
+///
+/// # Examples
 ///
 /// ```
 /// use bvhkit::{Bvh, Ray, Triangle, reference::exact::{self, Exact}};

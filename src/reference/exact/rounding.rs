@@ -1,4 +1,4 @@
-//! The nearest floating-point number to a fraction.
+//! Rounding of a fraction to the nearest floating-point number.
 
 use super::fraction::Fraction;
 use super::integers::decompose;
@@ -9,11 +9,11 @@ use dashu_int::{IBig, UBig};
 
 /// The floating-point format of a scalar.
 struct Format {
-    /// Of the significand, with the leading one.
+    /// The number of binary digits of the significand, with the leading one.
     digits: i32,
     /// The smallest positive number is 2^lowest.
     lowest: i32,
-    /// The largest number lies between 2^highest and twice that.
+    /// The largest number is between 2^highest and twice that.
     highest: i32,
 }
 
@@ -29,7 +29,7 @@ impl Format {
 }
 
 impl Fraction {
-    /// The nearest number of `S`, ties to even.
+    /// Returns the nearest number of `S`, ties to even.
     pub(super) fn nearest<S: Scalar>(&self) -> f64 {
         let Some(top) = self.floor_log2() else { return 0.0 };
         let format = Format::of::<S>();
@@ -37,14 +37,14 @@ impl Fraction {
             f64::INFINITY
         } else {
             let unit = self.spacing_exponent::<S>();
-            // At most 2^digits, and a number of `S` times a power of two that is one of its spacings: both
-            // operations are exact, or overflow as rounding should.
+            // The multiple is at most 2^digits, and its product with the spacing is a number of
+            // `S`. So both operations are exact, or overflow as rounding should.
             self.nearest_multiple_of_power(unit) * power_of_two(unit)
         };
         if self.numerator < IBig::ZERO { -size } else { size }
     }
 
-    /// The exponent of the spacing of the numbers of `S` at this value.
+    /// Returns the exponent of the spacing of the numbers of `S` at this value.
     pub(super) fn spacing_exponent<S: Scalar>(&self) -> i32 {
         let format = Format::of::<S>();
         match self.floor_log2() {
@@ -53,19 +53,21 @@ impl Fraction {
         }
     }
 
-    /// The k with 2^k <= |self| < 2^(k + 1); `None` for zero.
+    /// Returns the k with 2^k <= |self| < 2^(k + 1); `None` for zero.
     fn floor_log2(&self) -> Option<i32> {
         let size = self.size();
         if size.is_zero() {
             return None;
         }
-        // The ratio lies between 2^(k - 1) and 2^(k + 1).
+        // The ratio is between 2^(k - 1) and 2^(k + 1).
         let k = bit_length(&size) - bit_length(&self.denominator);
         let k = if at_scale(&size, -k) >= at_scale(&self.denominator, k) { k } else { k - 1 };
         Some(k + self.exponent)
     }
 
-    /// |self| / 2^unit to the nearest integer, ties to even. Exact below 2^53.
+    /// Returns |self| / 2^unit as the nearest integer, ties to even.
+    ///
+    /// It is exact below 2^53.
     fn nearest_multiple_of_power(&self, unit: i32) -> f64 {
         let shift = self.exponent - unit;
         let (numerator, denominator) = (at_scale(&self.size(), shift), at_scale(&self.denominator, -shift));
@@ -83,8 +85,9 @@ impl Fraction {
     }
 }
 
-/// n * 2^shift for a positive shift, else n: of a ratio's two parts, one is scaled up instead of the
-/// other down.
+/// Returns n * 2^shift if the shift is positive, else n.
+///
+/// Of the two parts of a ratio one is scaled up, instead of the other down.
 fn at_scale(n: &UBig, shift: i32) -> UBig {
     n << shift.max(0) as usize
 }
@@ -93,7 +96,7 @@ fn bit_length(n: &UBig) -> i32 {
     n.bit_len() as i32
 }
 
-/// 2^exponent, for exponents of positive `f64` numbers.
+/// Returns 2^exponent, for the exponents of positive `f64` numbers.
 fn power_of_two(exponent: i32) -> f64 {
     if exponent >= -1022 {
         f64::from_bits(((exponent + 1023) as u64) << 52)
@@ -110,7 +113,7 @@ mod tests {
         Fraction::new(numerator.into(), denominator.into(), exponent).unwrap()
     }
 
-    /// Both signs of a fraction round to a number and its opposite.
+    /// Checks that a fraction rounds to a number, and its opposite to the opposite.
     fn assert_rounds<S: Scalar>(numerator: i64, denominator: i64, exponent: i32, expected: S) {
         for (numerator, expected) in [(numerator, expected), (-numerator, -expected)] {
             let rounded = fraction(numerator, denominator, exponent).to_scalar::<S>();
@@ -134,11 +137,11 @@ mod tests {
         let one = 1 << 24;
         assert_rounds(one + 1, 1, -24, 1.0f32);
         assert_rounds(one + 3, 1, -24, 1.0f32 + 2.0 * f32::EPSILON);
-        // A little beyond the tie: rounding to f64 first would lose it.
+        // A little beyond the tie: rounding to `f64` first would lose it.
         assert_rounds((one + 1) << 36 | 1, 1, -60, 1.0f32.next_up());
         assert_rounds((one + 1) << 36, 1, -60, 1.0f32);
         assert_rounds(((one + 1) << 36) - 1, 1, -60, 1.0f32);
-        // Rounding up to the next power of two.
+        // These round up to the next power of two.
         assert_rounds((one << 1) - 1, 1, -25, 1.0f32);
         assert_rounds((1 << 53) + 1, 1, -53, 1.0);
         assert_rounds((1 << 53) + 3, 1, -53, 1.0 + 2.0 * f64::EPSILON);
@@ -149,7 +152,7 @@ mod tests {
     fn subnormal_numbers_have_their_own_spacing() {
         assert_rounds(1, 1, -149, f32::from_bits(1));
         assert_rounds(1, 1, -1074, f64::from_bits(1));
-        // Ties between 0 and 1, 1 and 2, 2 and 3 times the smallest.
+        // Ties between 0 and 1, 1 and 2, 2 and 3, 3 and 4 times the smallest number.
         for (n, expected) in [(1, 0), (3, 2), (5, 2), (7, 4)] {
             assert_rounds(n, 2, -149, f32::from_bits(expected as u32));
             assert_rounds(n, 2, -1074, f64::from_bits(expected));
@@ -158,7 +161,7 @@ mod tests {
         assert_rounds(499, 1000, -1074, 0.0);
         assert_rounds(1, 1, -5000, 0.0);
         assert_rounds(1, 1, -5000, 0.0f32);
-        // The largest subnormal number, and from it to the smallest normal one.
+        // The largest subnormal number, and numbers between it and the smallest normal one.
         assert_rounds((1 << 23) - 1, 1, -149, f32::MIN_POSITIVE.next_down());
         assert_rounds((1 << 24) - 1, 2, -149, f32::MIN_POSITIVE);
         assert_rounds((1 << 53) - 1, 2, -1074, f64::MIN_POSITIVE);

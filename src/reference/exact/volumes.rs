@@ -7,7 +7,7 @@ use crate::primitive::Triangle;
 use core::ops::{Add, Mul, Sub};
 use dashu_int::IBig;
 
-/// Numbers that are added and multiplied without being used up: `f64`, `i128`, `IBig`.
+/// Numbers that can be added and multiplied by reference: `f64`, `i128`, `IBig`.
 pub(super) trait Number: Sized {
     fn plus(&self, other: &Self) -> Self;
     fn minus(&self, other: &Self) -> Self;
@@ -48,10 +48,11 @@ pub(super) fn cross<N: Number>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
     [component(1, 2), component(2, 0), component(0, 1)]
 }
 
-/// U, V, W and what t is made of, as integers.
+/// U, V, W, and the two parts of t, as integers.
 ///
-/// Each is six times the volume of a tetrahedron, hence the name: U that of the origin, b, c and the
-/// direction's tip, the height that of the origin and the triangle.
+/// Each is six times the volume of a tetrahedron, hence the name. That of U has the
+/// origin, b, c and the direction's tip as its corners. That of the height has the origin
+/// and the triangle's corners.
 pub(super) struct Volumes {
     /// U, V, W, in units of length^2 * direction.
     sides: [IBig; 3],
@@ -64,7 +65,9 @@ pub(super) struct Volumes {
 }
 
 impl Volumes {
-    /// `None` if a corner is not finite. The ray must be valid.
+    /// Returns them, exactly; `None` if a corner is not finite.
+    ///
+    /// The ray has to be valid.
     pub fn exact<S: Scalar>(triangle: &Triangle<S>, ray: &Ray<S>) -> Option<Self> {
         let [[ax, ay, az], [bx, by, bz], [cx, cy, cz], [ox, oy, oz], direction] =
             [triangle.a, triangle.b, triangle.c, ray.origin, ray.direction].map(|p| p.map(S::to_f64));
@@ -74,10 +77,10 @@ impl Volumes {
         }
         let (lengths, direction) = (Integers::new(lengths), Integers::new(direction));
         let exponent = lengths.exponent - direction.exponent;
-        // With lengths below 2^l and directions below 2^d, differences are below 2^(l + 1), the cross
-        // products' components below 2^(2 l + 3), U, V and W below 2^(2 l + d + 5), their sum below
-        // 2^(2 l + d + 7), the height below 2^(3 l + 6). Up to 40 bits of each that fits `i128`, which
-        // is several times as fast.
+        // Let lengths be below 2^l and directions below 2^d. Then differences are below 2^(l + 1),
+        // the components of cross products below 2^(2 l + 3), U, V and W below 2^(2 l + d + 5),
+        // their sum below 2^(2 l + d + 7), and the height below 2^(3 l + 6). With up to 40 bits
+        // each, all fit `i128`, which is several times as fast.
         let fits = lengths.bits.max(direction.bits) <= 40;
         let (sides, sum, height) = if fits {
             let (sides, sum, height) = volumes(&lengths.to_array::<i128>(), &direction.to_array());
@@ -94,28 +97,31 @@ impl Volumes {
         self.sides.iter().all(|side| *side >= zero) || self.sides.iter().all(|side| *side <= zero)
     }
 
-    /// Where the line meets the plane; `None` if it is parallel to it or the triangle has no area.
+    /// Returns the t at which the line meets the plane.
+    ///
+    /// Returns `None` if the line is parallel to the plane or the triangle has no area.
     pub fn t(&self) -> Option<Fraction> {
         Fraction::new(self.height.clone(), self.sum.clone(), self.exponent)
     }
 
-    /// -min(U, V, W) / |U + V + W| with the signs turned so that the sum is positive.
+    /// Returns -min(U, V, W) / |U + V + W|, signs turned so that the sum is positive.
     pub fn slack(&self) -> Option<Fraction> {
-        // Turning the signs turns the order.
+        // To turn the signs is to turn the order.
         let [u, v, w] = &self.sides;
         let nearest = if self.sum > IBig::ZERO { u.min(v).min(w) } else { u.max(v).max(w) };
         Fraction::new(-nearest, self.sum.clone(), 0)
     }
 
-    /// The signs of U, V, W.
+    /// Returns the signs of U, V, W.
     #[cfg(test)]
     pub fn signs(&self) -> [core::cmp::Ordering; 3] {
         self.sides.each_ref().map(|side| side.cmp(&IBig::ZERO))
     }
 }
 
-/// U, V, W, their sum, and a . (c x b), of the corners a, b, c and the origin, coordinate by coordinate,
-/// and the direction.
+/// Returns U, V, W, their sum, and a . (c x b).
+///
+/// `lengths` are the coordinates of the corners a, b, c and of the origin, in this order.
 fn volumes<N: Number + Clone>(lengths: &[N; 12], direction: &[N; 3]) -> ([N; 3], N, N) {
     let point = |i: usize| [0, 1, 2].map(|axis| lengths[i + axis].clone());
     let origin = point(9);
@@ -134,7 +140,7 @@ mod tests {
     #[test]
     fn machine_integers_are_used_only_where_they_hold_the_result() {
         for bits in 40..=42 {
-            // In all signs, among them those that make every term as large as can be.
+            // All combinations of signs, among them those that make every term as large as can be.
             let far = ((1u64 << bits) - 1) as f64;
             for signs in 0..1 << 15 {
                 let x = |i: usize| if signs >> i & 1 == 0 { far } else { -far };

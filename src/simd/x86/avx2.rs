@@ -1,11 +1,11 @@
-//! AVX2, with what came to processors together with it.
+//! AVX2, and the extensions that processors got together with it.
 
 use super::arch::*;
 use super::{halves, has};
 use crate::simd::vector::vector;
 use crate::simd::{Backend, Isa, LeafLanes, Pair, Routine};
 
-/// Proof of AVX2.
+/// The token that proves AVX2.
 #[derive(Clone, Copy, Debug)]
 pub struct Avx2(());
 
@@ -17,7 +17,7 @@ impl Avx2 {
 }
 
 impl Avx2 {
-    /// What has AVX-512, and all that its token stands for, has AVX2.
+    /// Returns the token of AVX2: `Avx512::detect` asks for AVX2 too.
     #[inline(always)]
     pub(super) fn of_avx512(_: super::Avx512) -> Self {
         Self(())
@@ -45,7 +45,7 @@ impl Isa for Avx2 {
         fn with_instructions<R>(f: impl FnOnce() -> R) -> R {
             f()
         }
-        // SAFETY: the token.
+        // SAFETY: the token proves that the processor has the instructions.
         unsafe { with_instructions(f) }
     }
     #[inline(always)]
@@ -68,7 +68,7 @@ impl Isa for Avx2 {
         ) -> R::Output {
             R::run::<I, W>(isa, backend, a, b, c, d)
         }
-        // SAFETY: the token.
+        // SAFETY: the token proves that the processor has the instructions.
         unsafe { routine::<Self, R, W>(self, backend, a, b, c, d) }
     }
 }
@@ -105,11 +105,11 @@ vector! {
     or(a, b) = _mm_or_ps(a, b);
     not(a) = _mm_xor_ps(a, _mm_castsi128_ps(_mm_set1_epi32(-1)));
     bits(mask) = _mm_movemask_ps(mask) as u32;
-    /// All at once: one by one, each asks whether it is in range.
+    /// Converts all lanes at once: one by one, each conversion checks its range.
     #[inline(always)]
     fn to_integers(self) -> [i32; 3] {
         let mut integers = [0; 4];
-        // SAFETY: the vector's token; and four integers.
+        // SAFETY: the vector holds the token, and `integers` has room for four.
         unsafe { _mm_storeu_si128(integers.as_mut_ptr().cast(), _mm_cvttps_epi32(self.0)) };
         [integers[0], integers[1], integers[2]]
     }

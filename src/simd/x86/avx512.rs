@@ -1,4 +1,4 @@
-//! AVX-512, whose masks are registers of their own.
+//! AVX-512, whose masks have registers of their own.
 #![expect(unused_unsafe, reason = "masks are integers: their operations are safe, those of vectors are not")]
 
 use super::arch::*;
@@ -6,14 +6,14 @@ use super::{halves, has, sort};
 use crate::simd::vector::vector;
 use crate::simd::{Backend, Isa, LeafLanes, Pair, Routine, Window};
 
-/// Proof of AVX-512.
+/// The token that proves AVX-512.
 #[derive(Clone, Copy, Debug)]
 pub struct Avx512(());
 
 impl Avx512 {
     #[inline]
     pub fn detect() -> Option<Self> {
-        // The last five came later: before Ice Lake, processors that used 512 bits slowed down for it.
+        // The last five exclude processors before Ice Lake, which slow down when they use 512 bits.
         let has = has!(
             "avx512f",
             "avx512bw",
@@ -52,7 +52,7 @@ impl Isa for Avx512 {
         fn with_instructions<R>(f: impl FnOnce() -> R) -> R {
             f()
         }
-        // SAFETY: the token.
+        // SAFETY: the token proves that the processor has the instructions.
         unsafe { with_instructions(f) }
     }
     #[inline(always)]
@@ -76,7 +76,7 @@ impl Isa for Avx512 {
         ) -> R::Output {
             R::run::<I, W>(isa, backend, a, b, c, d)
         }
-        // SAFETY: the token.
+        // SAFETY: the token proves that the processor has the instructions.
         unsafe { routine::<Self, R, W>(self, backend, a, b, c, d) }
     }
 }
@@ -110,11 +110,11 @@ vector! {
     or(a, b) = a | b;
     not(a) = !a;
     bits(mask) = u32::from(mask) & 0xF;
-    /// All at once: one by one, each asks whether it is in range.
+    /// Converts all lanes at once: one by one, each conversion checks its range.
     #[inline(always)]
     fn to_integers(self) -> [i32; 3] {
         let mut integers = [0; 4];
-        // SAFETY: the vector's token; and four integers.
+        // SAFETY: the vector holds the token, and `integers` has room for four.
         unsafe { _mm_storeu_si128(integers.as_mut_ptr().cast(), _mm_cvttps_epi32(self.0)) };
         [integers[0], integers[1], integers[2]]
     }
@@ -264,10 +264,10 @@ halves! {
     split(both) = [_mm512_castpd512_pd256(both), _mm512_extractf64x4_pd::<1>(both)]
 }
 
-/// A node's children.
+/// Loads the children of a node.
 #[inline(always)]
 fn row(_: Avx512, children: &[u32]) -> __m512i {
     let children = children[..16].as_ptr();
-    // SAFETY: the token; and sixteen children of four bytes.
+    // SAFETY: the token proves the instructions, and the slice has sixteen children of four bytes.
     unsafe { _mm512_loadu_si512(children.cast()) }
 }

@@ -1,14 +1,12 @@
-//! Eight scalars, computed with twice over.
+//! Eight lanes in a vector of sixteen, which holds each lane twice.
 //!
-//! While vectors of 512 bits are under way, an Intel processor multiplies vectors of 256 bits in
-//! one place, but those of 512 in two. So with AVX-512 a leaf's eight primitives are tested in both
-//! halves of a vector that is as wide as a node's. Both hold the same, at no price: a row is spread
-//! over them on its way from the cache. On an Intel Xeon (Granite Rapids), means of a kitchen,
-//! dragon and sponza in two runs, closest hits of `Fast` triangles were 1.10, 1.07 and 1.07 times
-//! as quick (primary, diffuse, random), any hits 1.05, of `Watertight` ones 1.12, 1.10, 1.09 and
-//! 1.07.
+//! While 512-bit operations are in flight, an Intel processor has one port for 256-bit multiplies,
+//! but two for 512-bit ones. So with AVX-512 the eight primitives of a leaf are tested in both
+//! halves of a vector that is as wide as a node's. Both halves hold the same lanes, and that costs
+//! nothing: the load from the cache broadcasts a row to both. On an Intel Xeon rays are 1.05 to
+//! 1.12 times as fast (measured: docs/decisions.md, 8).
 //!
-//! Quotients and square roots are computed once: of 512 bits they take twice as long as of 256.
+//! Quotients and square roots are computed once, in 256 bits: in 512 bits they take twice as long.
 #![expect(unused_unsafe, reason = "masks are integers: their operations are safe, those of vectors are not")]
 
 use super::Avx512;
@@ -50,14 +48,19 @@ vector! {
     bits(mask) = u32::from(mask) & 0xFF;
 }
 
-/// Whether doubled vectors are quicker than single ones: on Intel's processors. On AMD's they are no quicker, and slower where
-/// 512 bits take two passes: with single ones, on Zen 4, closest hits were 1.03 to 1.08 times as quick, any hits 1.03 to 1.10.
+/// Whether doubled vectors are faster than single ones, as on Intel's processors.
+///
+/// On AMD's processors they are no faster, and they are slower where a 512-bit operation takes two
+/// passes (measured: docs/decisions.md, 8).
 pub fn is_doubled_quicker() -> bool {
-    /// 0 as long as nobody has asked: on a virtual machine the question takes microseconds.
+    /// 0 until the first call.
+    ///
+    /// On a virtual machine the CPUID instruction takes microseconds.
     static ANSWER: AtomicU8 = AtomicU8::new(0);
     let mut answer = ANSWER.load(Ordering::Relaxed);
     if answer == 0 {
-        // SAFETY: a processor with AVX2 has the instruction, and nobody asks on others.
+        // SAFETY: each processor with AVX-512 has CPUID, and `Backend::is_quicker` calls this only
+        // after `Avx512::detect` has found it.
         let vendor = unsafe { __cpuid(0) };
         let is_intel =
             [vendor.ebx, vendor.edx, vendor.ecx].map(u32::to_le_bytes) == [*b"Genu", *b"ineI", *b"ntel"];

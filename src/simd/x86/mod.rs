@@ -16,7 +16,9 @@ pub use avx512::Avx512;
 pub use doubled::is_doubled_quicker;
 pub use sse2::Sse2;
 
-/// Whether the processor has all of these; without `std`, whether the build's target has.
+/// Whether the processor has all of these features.
+///
+/// Without `std`, whether the build's target has them.
 macro_rules! has {
     ($($feature:tt),* $(,)?) => {{
         #[cfg(feature = "std")]
@@ -27,20 +29,20 @@ macro_rules! has {
     }};
 }
 
-/// Twice as many lanes, which are one vector nevertheless.
+/// Implements `Halves` for a vector type that is one register.
 macro_rules! halves {
     ($lanes:ident of $half:ident: join($first:ident, $second:ident) = $join:expr, split($both:ident) = $split:expr) => {
         impl crate::simd::Halves<$half> for $lanes {
             #[inline(always)]
             fn of_halves([first, second]: [$half; 2]) -> Self {
                 let ($first, $second) = (first.0, second.0);
-                // SAFETY: the vectors' token.
+                // SAFETY: the vectors hold the token: the processor has the instructions.
                 Self(unsafe { $join }, first.1)
             }
             #[inline(always)]
             fn to_halves(self) -> [$half; 2] {
                 let $both = self.0;
-                // SAFETY: the vector's token.
+                // SAFETY: the vector holds the token: the processor has the instructions.
                 let [first, second] = unsafe { $split };
                 [$half(first, self.1), $half(second, self.1)]
             }

@@ -1,16 +1,20 @@
-//! What a node's children need of AVX-512 beyond the common operations: sorting them in registers.
+//! Sorts and packs the children of a node in registers of AVX-512.
 
 use super::Avx512;
 use super::arch::*;
 use crate::simd::Window;
 
-/// Of two to eight children, the lane of the nearest; all are written to the windows, farthest first. None of more, which few
-/// nodes have: they are sorted one by one.
+/// Sorts two to eight children by distance and returns the lane of the nearest.
 ///
-/// A key is a distance, not below +0, whose last four bits are replaced by its lane: as an integer it orders as the
-/// distance does, and one permutation fetches the children. So the entries written are up to 16 ulps smaller than
-/// the distances, never larger. Keys are packed first: four and fewer, which most are, need half the steps both of the
-/// reduction, for whose result the next node waits, and of the sorting network.
+/// All of them are written to the windows, the farthest first. Returns `None` for more than eight
+/// children, which few nodes have: the caller sorts those one by one.
+///
+/// A key is a distance, not below +0, whose last four bits are replaced by its lane. As an integer
+/// a key has the order of its distance, and one permutation fetches the children. So the entries
+/// are less than 16 ulps smaller than the distances, and never larger.
+///
+/// Keys are packed first. Most nodes have at most four, and these need half the steps, both in the
+/// reduction, whose result the next node waits for, and in the sorting network.
 #[inline(always)]
 pub fn sort(
     _: Avx512,
@@ -24,16 +28,16 @@ pub fn sort(
     if count > 8 {
         return None;
     }
-    // SAFETY: the token is the proof of AVX-512; the windows are 64 bytes long, and any bits will do for what is
-    // left over in them.
+    // SAFETY: the token proves AVX-512. The windows are 64 bytes long, and any bits are valid in
+    // the part of them that holds no child.
     unsafe {
         let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
         let low_bits = _mm512_set1_epi32(15);
         let keys = _mm512_or_si512(_mm512_andnot_si512(low_bits, _mm512_castps_si512(near)), lanes);
-        // Merged with something else than zeros: masked with zeros it waits for what was in the register before.
+        // Merges with ones: masking with zeros would wait for the register's old value.
         let none = _mm512_set1_epi32(-1);
         let keys = _mm512_mask_compress_epi32(none, met, keys);
-        // Complements, the nearest the largest but for what is left over, which goes to the end.
+        // The nearest has the largest complement, except for the unused lanes, which go to the end.
         let kept = (1u32 << count) - 1;
         let turned = _mm512_mask_xor_epi32(none, kept as u16, keys, none);
         if count <= 4 {
@@ -68,18 +72,20 @@ fn min4(v: __m128i) -> u32 {
     _mm_cvtsi128_si32(v) as u32
 }
 
-/// The children met, in the order of their lanes.
+/// Packs the children of the mask, in the order of their lanes.
 #[inline(always)]
 pub fn compress(_: Avx512, met: u16, children: __m512i, references: &mut Window<u32>) {
-    // SAFETY: the token is the proof of AVX-512; the window is 64 bytes long.
+    // SAFETY: the token proves AVX-512, and the window is 64 bytes long.
     unsafe {
-        // Merged with something else than zeros: masked with zeros it waits for what was in the register before.
+        // Merges with ones: masking with zeros would wait for the register's old value.
         let packed = _mm512_mask_compress_epi32(_mm512_set1_epi32(-1), met, children);
         _mm512_storeu_si512(references.as_mut_ptr().cast(), packed);
     }
 }
 
-/// One step of a sorting network: each lane and its partner exchanged where the mask has the larger.
+/// One step of a sorting network, for each lane and its partner.
+///
+/// A lane gets the larger of the two if its bit in the mask is set, else the smaller.
 macro_rules! step {
     ($v:ident, $permuted:expr, $mask:literal, $min:ident, $mask_max:ident) => {{
         let partner = $permuted;
@@ -95,7 +101,9 @@ fn sort4(v: __m128i) -> __m128i {
     step!(v, _mm_shuffle_epi32::<0b11_01_10_00>(v), 0b0100, _mm_min_epu32, _mm_mask_max_epu32)
 }
 
-/// Of 19 comparisons in 6 steps (Knuth, The Art of Computer Programming, volume 3, 5.3.4).
+/// Sorts eight lanes with 19 comparisons in 6 steps.
+///
+/// The network is from Knuth, The Art of Computer Programming, volume 3, 5.3.4.
 #[inline]
 #[target_feature(enable = "avx512f,avx512vl")]
 fn sort8(v: __m256i) -> __m256i {
@@ -119,12 +127,12 @@ mod tests {
     use crate::simd::{Isa, KernelLanes};
     use core::mem::MaybeUninit;
 
-    /// Distances with ties and zeros, all sets of children of two and more.
+    /// Distances with ties and zeros, and all sets of two or more children.
     #[test]
     fn children_are_sorted_farthest_first_and_none_is_lost() {
         let Some(isa) = super::Avx512::detect() else { return };
         let distances: [f32; 16] = core::array::from_fn(|lane| ((lane * 7 + 3) % 11) as f32 * 0.75);
-        // SAFETY: sixteen scalars.
+        // SAFETY: `distances` has sixteen scalars.
         let near = unsafe { <super::Avx512 as Isa>::F32x16::load(isa, distances.as_ptr()) };
         let children: [u32; 16] = core::array::from_fn(|lane| 1000 + lane as u32);
         for met in (3..=u32::from(u16::MAX)).filter(|met| met.count_ones() > 1) {
@@ -135,7 +143,7 @@ mod tests {
                 assert_eq!(nearest, None, "{met:b}");
                 continue;
             }
-            // SAFETY: initialised above.
+            // SAFETY: both arrays were initialised where they were created.
             let (references, entries) =
                 unsafe { (references.map(|x| x.assume_init()), entries.map(|x| x.assume_init())) };
             let count = met.count_ones() as usize;
@@ -157,7 +165,7 @@ mod tests {
         for met in 0..=u32::from(u16::MAX) {
             let mut references = [MaybeUninit::new(0u32); 16];
             assert!(<super::Avx512 as Isa>::F32x16::compress(isa, met, &children, &mut references));
-            // SAFETY: initialised above.
+            // SAFETY: the array was initialised where it was created.
             let references = references.map(|x| unsafe { x.assume_init() });
             let lanes = (0..16).filter(|lane| met >> lane & 1 != 0);
             assert!(

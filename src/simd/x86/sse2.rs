@@ -5,7 +5,7 @@ use crate::simd::Pair;
 use crate::simd::isa::plain_isa;
 use crate::simd::vector::vector;
 
-/// Proof of SSE2.
+/// The token that proves SSE2.
 #[derive(Clone, Copy, Debug)]
 pub struct Sse2(());
 
@@ -40,11 +40,11 @@ vector! {
     or(a, b) = _mm_or_ps(a, b);
     not(a) = _mm_xor_ps(a, _mm_castsi128_ps(_mm_set1_epi32(-1)));
     bits(mask) = _mm_movemask_ps(mask) as u32;
-    /// All at once: one by one, each asks whether it is in range.
+    /// Converts all lanes at once: one by one, each conversion checks its range.
     #[inline(always)]
     fn to_integers(self) -> [i32; 3] {
         let mut integers = [0; 4];
-        // SAFETY: the vector's token; and four integers.
+        // SAFETY: the vector holds the token, and `integers` has room for four.
         unsafe { _mm_storeu_si128(integers.as_mut_ptr().cast(), _mm_cvttps_epi32(self.0)) };
         [integers[0], integers[1], integers[2]]
     }

@@ -1,5 +1,6 @@
-//! A hall: a few huge triangles around a great many long thin ones. What makes interiors hard: most
-//! boxes are large, overlap, and are nearly empty.
+//! A hall: a few huge triangles around a great many long thin ones.
+//!
+//! Interiors are hard because most boxes are large, overlap, and are nearly empty.
 
 use super::quad;
 use bvhkit::Triangle;
@@ -8,15 +9,17 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 use std::f32::consts::TAU;
 
-/// 10 by 8 m, 4 m high, a corner at the origin.
+/// The hall is 10 by 8 m and 4 m high, with a corner at the origin.
 const SIZE: Vec3 = Vec3::new(10.0, 4.0, 8.0);
 const COLUMNS: usize = 8;
 const WINDOWS: usize = 6;
-/// Each pipe is of so many, one behind the other.
+/// The number of pieces of a pipe, one behind the other.
 const PIECES: usize = 4;
 
-/// A third of the triangles each in round columns from floor to ceiling, in the slats of the blinds
-/// at the windows, and in pipes below the ceiling.
+/// Returns a hall of about `n` triangles.
+///
+/// A third of them each are in round columns from floor to ceiling, in the slats of the blinds at
+/// the windows, and in pipes below the ceiling.
 pub fn interior(n: usize) -> Vec<Triangle> {
     let share = n.saturating_sub(12) / 3;
     let mut triangles = cuboid(0.5 * SIZE, 0.5 * SIZE, Quat::IDENTITY);
@@ -57,7 +60,7 @@ pub fn interior(n: usize) -> Vec<Triangle> {
     triangles
 }
 
-/// A box about its center, turned.
+/// Returns a box around its center, rotated by `turn`.
 fn cuboid(center: Vec3, half: Vec3, turn: Quat) -> Vec<Triangle> {
     let corner = |x: f32, y: f32, z: f32| center + turn * (half * Vec3::new(x, y, z));
     let ring = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
@@ -70,7 +73,7 @@ fn cuboid(center: Vec3, half: Vec3, turn: Quat) -> Vec<Triangle> {
     faces
 }
 
-/// The wall of an open tube: each side is two triangles of its whole length.
+/// Returns the wall of an open tube, two triangles of full length for each side.
 fn tube(from: Vec3, to: Vec3, radius: f32, sides: usize) -> impl Iterator<Item = Triangle> {
     let (u, v) = (to - from).normalize().any_orthonormal_pair();
     let rim = move |i: usize| {

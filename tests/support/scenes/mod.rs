@@ -1,4 +1,6 @@
-//! Scenes made of nothing but a number of triangles: the same on every run and every machine.
+//! Scenes that depend only on a number of triangles.
+//!
+//! They are the same in every run and on every machine.
 
 mod interior;
 pub mod soup;
@@ -7,7 +9,7 @@ pub mod surface;
 use bvhkit::Triangle;
 use glam::Vec3;
 
-/// A scene, and from where to look at it.
+/// A scene and a viewpoint.
 pub struct NamedScene {
     pub name: String,
     pub triangles: Vec<Triangle>,
@@ -15,7 +17,7 @@ pub struct NamedScene {
     pub target: Vec3,
 }
 
-/// One scene of each kind, each of about `n` triangles.
+/// Returns one scene of each kind, each of about `n` triangles.
 pub fn all(n: usize) -> Vec<NamedScene> {
     let outside = Vec3::new(0.6, 0.5, 0.9);
     [
@@ -29,7 +31,7 @@ pub fn all(n: usize) -> Vec<NamedScene> {
     .into()
 }
 
-/// The two triangles of a quadrilateral whose corners are given in turn.
+/// Returns the two triangles of a quadrilateral with its corners in order.
 fn quad([a, b, c, d]: [Vec3; 4]) -> [Triangle; 2] {
     [Triangle::new(a, b, c), Triangle::new(a, c, d)]
 }

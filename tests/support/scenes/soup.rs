@@ -1,11 +1,13 @@
-//! Triangles that share nothing, in the unit cube.
+//! Triangles that share no corners, in the unit cube.
 
 use bvhkit::Triangle;
 use glam::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// Scattered evenly; as small as they are many, so that they fill the cube about equally.
+/// Returns `n` evenly scattered triangles.
+///
+/// More triangles are smaller ones, so that they fill the cube about equally.
 pub fn scattered(n: usize) -> Vec<Triangle> {
     let mut rng = Pcg32::seed_from_u64(2);
     let size = (n as f32).cbrt().recip();
@@ -17,7 +19,9 @@ pub fn scattered(n: usize) -> Vec<Triangle> {
         .collect()
 }
 
-/// In 32 clusters, some a hundred times smaller than others, and denser towards their centers.
+/// Returns triangles in 32 clusters, denser towards their centers.
+///
+/// Some clusters are a hundred times smaller than others.
 pub fn clustered(n: usize) -> Vec<Triangle> {
     let mut rng = Pcg32::seed_from_u64(3);
     let clusters: Vec<(Vec3, f32)> =
@@ -32,13 +36,13 @@ pub fn clustered(n: usize) -> Vec<Triangle> {
         .collect()
 }
 
-/// Its corners anywhere in a cube of that size.
+/// Returns a triangle with corners anywhere in a cube of side `size`.
 pub fn triangle(center: Vec3, size: f32, rng: &mut Pcg32) -> Triangle {
     let [a, b, c] = [(); 3].map(|()| center + size * (cube(rng) - 0.5));
     Triangle::new(a, b, c)
 }
 
-/// A point of the unit cube.
+/// Returns a random point of the unit cube.
 pub fn cube(rng: &mut Pcg32) -> Vec3 {
     Vec3::from_array(rng.random())
 }

@@ -5,7 +5,9 @@ use bvhkit::Triangle;
 use glam::{Vec2, Vec3};
 use std::f32::consts::TAU;
 
-/// A torus with bumps. Watertight: triangles that share an edge share the very bits of its ends.
+/// Returns a torus with bumps.
+///
+/// It is watertight: triangles that share an edge share the bits of its ends.
 pub fn closed_mesh(n: usize) -> Vec<Triangle> {
     let (columns, rows) = grid(n, 2.0);
     let vertex = |i: usize, j: usize| {
@@ -19,7 +21,9 @@ pub fn closed_mesh(n: usize) -> Vec<Triangle> {
     tessellate(columns, rows, vertex)
 }
 
-/// Hills on a square of side 2: octaves of waves, each turned against the one before.
+/// Returns hills on a square of side 2.
+///
+/// They are octaves of waves, each rotated against the one before.
 pub fn terrain(n: usize) -> Vec<Triangle> {
     let (columns, rows) = grid(n, 1.0);
     let vertex = |i: usize, j: usize| {
@@ -42,7 +46,9 @@ fn height(mut at: Vec2) -> f32 {
     height
 }
 
-/// Columns and rows of a grid of about `n` triangles, with about `aspect` columns for each row.
+/// Returns the columns and rows of a grid of about `n` triangles.
+///
+/// There are about `aspect` columns for each row.
 fn grid(n: usize, aspect: f32) -> (usize, usize) {
     let columns = ((n as f32 / 2.0 * aspect).sqrt() as usize).max(3);
     (columns, (n / 2 / columns).max(3))

@@ -9,17 +9,17 @@ type Corners = ([Vec3; 3], Option<[Vec3; 3]>);
 
 /// A `<triangles>` or `<polylist>` element.
 pub struct Polygons<'a> {
-    /// The symbol of the material, to be bound where the mesh is used.
+    /// The symbol of the material, which each use of the mesh binds to a material.
     pub material: Option<&'a str>,
     inputs: &'a InputList,
-    /// Corners of each polygon; `None` if all are triangles.
+    /// The number of corners of each polygon; `None` if all are triangles.
     counts: Option<&'a [u32]>,
     /// For each corner, one index per input.
     indices: &'a [u32],
 }
 
 impl<'a> Polygons<'a> {
-    /// The polygons of a part of a mesh; `None` if it has none of the two supported kinds.
+    /// Returns the polygons of a part of a mesh; `None` if its kind is not supported.
     pub fn new(part: &'a Primitive) -> Option<Self> {
         match part {
             Primitive::Triangles(part) => Some(Self {
@@ -38,7 +38,11 @@ impl<'a> Polygons<'a> {
         }
     }
 
-    /// The polygons as fans of triangles. An index that names nothing is an error.
+    /// Returns the polygons as fans of triangles.
+    ///
+    /// # Errors
+    ///
+    /// If the mesh lacks positions, or an index names nothing.
     pub fn triangles(
         &self,
         vertices: &LocalMap<'a, Vertices>,
@@ -80,8 +84,9 @@ impl<'a> Polygons<'a> {
     }
 }
 
-/// Positions in the list of corners, three at a time: polygon (p, q, r, s, ...) becomes the
-/// triangles (p, q, r), (p, r, s), ...
+/// Returns the triangles of all polygons as positions in the list of corners.
+///
+/// Polygon (p, q, r, s, ...) becomes the triangles (p, q, r), (p, r, s), ...
 fn fans(counts: Option<&[u32]>, corners: usize) -> impl Iterator<Item = [usize; 3]> {
     let counts = match counts {
         Some(counts) => counts.iter().map(|&count| count as usize).collect(),
@@ -95,7 +100,7 @@ fn fans(counts: Option<&[u32]>, corners: usize) -> impl Iterator<Item = [usize; 
     })
 }
 
-/// A source of vectors, and which of a corner's indices points into it.
+/// A source of vectors, and the place of its index among a corner's indices.
 struct Column<'a> {
     values: &'a [f32],
     start: usize,

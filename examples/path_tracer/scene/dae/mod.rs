@@ -15,7 +15,7 @@ use glam::{Mat4, Vec3};
 
 use super::{Camera, Light, Material, Scene, Shape};
 
-/// Nodes nested deeper than this are refused: the instance of a node may contain itself.
+/// Maximum depth of nested nodes, since an instance of a node may contain itself.
 const MAX_DEPTH: usize = 64;
 
 pub fn load(path: &Path) -> Result<Scene> {
@@ -41,7 +41,7 @@ pub fn load(path: &Path) -> Result<Scene> {
         loader.add_node(node, &Mat4::IDENTITY, 0)?;
     }
 
-    // Beside a lamp of emitting shapes stands a light for renderers that cannot see it.
+    // A lamp of emitting shapes also has a light, for renderers that cannot use the shapes.
     let mut scene = loader.scene;
     if scene.surfaces.iter().any(|surface| scene.materials[surface.material].is_emitter()) {
         scene.lights.retain(|light| matches!(light, Light::Directional { .. }));
@@ -52,8 +52,11 @@ pub fn load(path: &Path) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The profile's own renderer takes from a camera only its lens and its direction, and steps back
-/// from the middle of the scene until all of it is in view. Its scene files are made for that.
+/// Moves the camera back until all of the scene is in view.
+///
+/// The profile's own renderer does the same: from a camera it takes only the lens
+/// and the direction, and it steps back from the middle of the scene. The profile's
+/// scene files are made for that.
 fn step_back(scene: &mut Scene) {
     let boxes = scene.shapes.iter().map(Shape::aabb);
     let Some(all) = boxes.reduce(Aabb::union) else { return };
@@ -63,8 +66,10 @@ fn step_back(scene: &mut Scene) {
     }
 }
 
-/// Parses the text. The schema wants a shape in every `<geometry>` and so does the parser, but an
-/// analytic sphere is an `<extra>` alone: such a geometry is given an empty shape first.
+/// Parses the text.
+///
+/// The schema and the parser want a shape in every `<geometry>`, but an analytic sphere is an
+/// `<extra>` alone. Such a geometry gets an empty shape first.
 fn parse(text: &str) -> Result<Document> {
     let mut root: Element = text.parse().map_err(|error| anyhow!("{error}"))?;
     let namespace = root.ns();
@@ -89,7 +94,7 @@ fn parse(text: &str) -> Result<Document> {
     Document::try_from(bytes.as_slice()).map_err(message)
 }
 
-/// The parser's error, which cannot be displayed by itself.
+/// Converts the parser's error, which cannot be displayed by itself.
 fn message(error: Error) -> anyhow::Error {
     match error {
         Error::Minidom(error) => anyhow!("{error}"),
@@ -167,7 +172,9 @@ impl Loader<'_> {
         self.scene.add_material(effect.map_or(Material::GREY, profile::material))
     }
 
-    /// The first camera counts. A field of view in both directions leaves the aspect open.
+    /// Adds a camera, unless there is one already.
+    ///
+    /// A field of view in both directions determines the aspect.
     fn add_camera(&mut self, camera: &dae_parser::Camera, transform: &Mat4) {
         let ProjectionType::Perspective(lens) = &camera.optics.ty else { return };
         if self.scene.camera.is_some() {
@@ -183,20 +190,20 @@ impl Loader<'_> {
         self.scene.camera = Some(Camera::from_node(transform, 2.0 * half_height.atan(), aspect));
     }
 
-    /// A spot light becomes a point light: its cone is not modelled.
+    /// Adds a light. A spot light becomes a point light: its cone is not modelled.
     fn add_light(&mut self, light: &dae_parser::Light, transform: &Mat4) {
         let position = transform.transform_point3(Vec3::ZERO);
         self.scene.lights.push(match &light.kind {
             _ if let Some(radiance) = profile::area_radiance(light) => Light::Rectangle {
                 corner: transform.transform_point3(Vec3::new(-0.5, -0.5, 0.0)),
-                // In this order the front is the node's -z.
+                // In this order, the front is the node's -z.
                 u: transform.transform_vector3(Vec3::Y),
                 v: transform.transform_vector3(Vec3::X),
                 radiance,
             },
             LightKind::Directional(light) => Light::Directional {
                 direction: transform.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Y),
-                // The format's colours are for white surfaces that appear as bright as the light.
+                // In this format, a white surface appears as bright as the colour of the light.
                 irradiance: std::f32::consts::PI * Vec3::from(*light.color),
             },
             LightKind::Point(light) => Light::Point { position, intensity: Vec3::from(*light.color) },
@@ -206,7 +213,7 @@ impl Loader<'_> {
     }
 }
 
-/// One step of a node's transformation as a matrix.
+/// Returns one step of a node's transformation as a matrix.
 fn local(step: &Transform) -> Mat4 {
     match step {
         // The file writes rows, glam takes columns.
@@ -221,7 +228,7 @@ fn local(step: &Transform) -> Mat4 {
             let [eye, target, up] = [*view.eye(), *view.target(), *view.up()].map(Vec3::from);
             glam::camera::rh::view::look_at_mat4(eye, target, up).inverse()
         }
-        // A shear is as good as absent from files; it is left out.
+        // Hardly any file has a shear, so it is left out.
         Transform::Skew(_) => Mat4::IDENTITY,
     }
 }

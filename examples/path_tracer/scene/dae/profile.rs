@@ -1,13 +1,17 @@
-//! Materials of COLLADA, and what its profile CMU462 adds in `<extra>` elements: mirror, glass,
-//! emission, area lights and spheres. The scene files of the course 15-462 use that profile.
+//! Materials of COLLADA, and the additions of its profile CMU462.
+//!
+//! The profile adds mirror, glass, emission, area lights and spheres, in `<extra>` elements. The
+//! scene files of the course 15-462 use it.
 
 use dae_parser::{Document, Effect, Element, Extra, Geometry, Light, Shader};
 use glam::Vec3;
 
 use super::Material;
 
-/// The material of an effect: what the profile says, else the emission or the diffuse colour of
-/// the common shader.
+/// Returns the material of an effect.
+///
+/// The material of the profile comes first, then the emission or the
+/// diffuse colour of the common shader.
 pub fn material(effect: &Effect) -> Material {
     let common = effect.get_common_profile();
     let nested = common.into_iter().flat_map(|it| it.extra.iter().chain(&it.technique.extra));
@@ -47,19 +51,19 @@ fn special_material(element: &Element) -> Option<Material> {
     }
 }
 
-/// The radius of a geometry that is an analytic sphere.
+/// Returns the radius of a geometry that is an analytic sphere.
 pub fn sphere_radius(geometry: &Geometry) -> Option<f32> {
     let sphere = find(&geometry.extra, "sphere")?;
     numbers(sphere, "radius")?.first().copied()
 }
 
-/// The radiance of an area light.
+/// Returns the radiance of an area light.
 pub fn area_radiance(light: &Light) -> Option<Vec3> {
     let color = numbers(find(&light.extra, "area")?, "color")?;
     color.first_chunk::<3>().copied().map(Vec3::from)
 }
 
-/// Whether the file uses the profile for materials or spheres.
+/// Returns whether the file uses the profile for materials or spheres.
 pub fn is_used(document: &Document) -> bool {
     let effects = document.iter().flat_map(|effect: &Effect| &effect.extra);
     let geometries = document.iter().flat_map(|geometry: &Geometry| &geometry.extra);
@@ -70,13 +74,13 @@ fn find<'a>(extras: &'a [Extra], name: &str) -> Option<&'a Element> {
     extras.iter().flat_map(elements).find(|element| element.name() == name)
 }
 
-/// The elements that an `<extra>` holds for the profile.
+/// Returns the elements that an `<extra>` holds for the profile.
 fn elements(extra: &Extra) -> impl Iterator<Item = &Element> {
     let techniques = extra.technique.iter().map(|technique| &technique.element);
     techniques.filter(|it| it.attr("profile") == Some("CMU462")).flat_map(Element::children)
 }
 
-/// The numbers in the text of a child element.
+/// Returns the numbers in the text of a child element.
 fn numbers(element: &Element, name: &str) -> Option<Vec<f32>> {
     let child = element.children().find(|child| child.name() == name)?;
     child.text().split_whitespace().map(|number| number.parse().ok()).collect()

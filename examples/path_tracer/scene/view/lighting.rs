@@ -1,4 +1,4 @@
-//! How to light what the camera sees: by a sun if it gets there, else by lamps.
+//! The lighting of the camera's view: a sun if its light gets there, else lamps.
 
 use std::f32::consts::PI;
 
@@ -8,20 +8,20 @@ use glam::Vec3;
 use super::super::{Camera, Light, Scene, Sky};
 use super::{Sight, Survey, directions, raster};
 
-/// The sun is used if it reaches this share of what is in the picture.
+/// The share of visible points that the sun has to reach.
 const ENOUGH_SUN: f32 = 0.25;
 const MAX_LAMPS: usize = 6;
-/// How far a lamp's light is taken to be of use, in heights of the room.
+/// The distance up to which a lamp's light is of use, in heights of the room.
 const REACH: f32 = 2.5;
 
-/// Whether all light comes from distant lights.
+/// Returns whether all light comes from distant lights.
 pub fn is_sunlight_only(scene: &Scene) -> bool {
     let distant = |light: &Light| matches!(light, Light::Directional { .. });
     let emits = scene.surfaces.iter().any(|it| scene.materials[it.material].is_emitter());
     !emits && !scene.lights.is_empty() && scene.lights.iter().all(distant)
 }
 
-/// Lights and a sky for the camera's picture.
+/// Chooses lights and a sky for the camera's picture.
 pub fn choose(survey: &Survey<'_>, camera: &Camera) -> (Vec<Light>, Sky) {
     let rays = raster(12, 9).map(|image| camera.ray(image, 4.0 / 3.0));
     let seen: Vec<Sight> = rays.filter_map(|ray| survey.look(&ray)).collect();
@@ -31,14 +31,16 @@ pub fn choose(survey: &Survey<'_>, camera: &Camera) -> (Vec<Light>, Sky) {
             let irradiance = PI * Vec3::new(1.75, 1.6, 1.35);
             (vec![Light::Directional { direction: -direction, irradiance }], sky)
         }
-        // Little of a bright sky would get in by the windows: more noise than light.
+        // Little light of a bright sky would get in by the windows: more noise than light.
         None => (lamps(survey, camera, &seen), sky.scaled(0.08)),
     }
 }
 
-/// The direction towards the sun: over the camera's left shoulder if what is in the picture can be
-/// lit from there, else the direction that lights most of it. That one is high: light comes into a
-/// court from there, whereas a low sun through a window only makes a spot on the floor.
+/// Returns the direction towards the sun, if one lights enough of the picture.
+///
+/// The first choice is over the camera's left shoulder. The second is the high direction that
+/// lights most of the picture: light comes into a court from above, whereas a low sun through a
+/// window only makes a spot on the floor.
 fn sun(survey: &Survey<'_>, camera: &Camera, seen: &[Sight]) -> Option<Vec3> {
     let lit = |direction: Vec3| {
         let lit = seen.iter().filter(|sight| survey.is_clear(sight, direction, f32::INFINITY));
@@ -54,9 +56,11 @@ fn sun(survey: &Survey<'_>, camera: &Camera, seen: &[Sight]) -> Option<Vec3> {
     best.filter(|best| best.0 > ENOUGH_SUN).map(|best| best.1)
 }
 
-/// Square lamps that shine down from below the ceiling. Each is put where it reaches most of what
-/// the ones before it leave dark, as long as that is worth a lamp. Candidates hang above the points
-/// in the picture and above the camera; not those below furniture, where the ceiling is low.
+/// Returns square lamps that shine down from below the ceiling.
+///
+/// Each lamp is put where it reaches most of the points that the lamps before it leave dark, as
+/// long as these are enough to be worth a lamp. Candidates hang above the points in the picture and
+/// above the camera. Those below furniture are left out, because the ceiling is low there.
 fn lamps(survey: &Survey<'_>, camera: &Camera, seen: &[Sight]) -> Vec<Light> {
     let up = survey.up;
     let floor = seen.iter().filter(|sight| sight.normal.dot(up) > 0.7).map(|sight| sight.point);
@@ -87,14 +91,14 @@ fn lamps(survey: &Survey<'_>, camera: &Camera, seen: &[Sight]) -> Vec<Light> {
     lights
 }
 
-/// A place for a lamp, and its height above what is below it.
+/// A place for a lamp, and its height above the point below it.
 struct Lamp {
     position: Vec3,
     height: f32,
 }
 
 impl Lamp {
-    /// Whether the light comes to what is seen, and is not too faint there.
+    /// Returns whether the light reaches a visible point and is not too faint there.
     fn reaches(&self, survey: &Survey<'_>, sight: &Sight) -> bool {
         let way = self.position - sight.point;
         let near = way.length() < REACH * self.height;
@@ -104,7 +108,7 @@ impl Lamp {
     fn light(&self, up: Vec3) -> Light {
         let side = 0.35 * self.height;
         let (u, v) = up.any_orthonormal_pair();
-        // In the order in which the front faces down.
+        // `u` and `v` are in the order in which the front faces down.
         let (u, v) = if u.cross(v).dot(up) < 0.0 { (u, v) } else { (v, u) };
         let corner = self.position - 0.5 * side * (u + v);
         Light::Rectangle { corner, u: side * u, v: side * v, radiance: Vec3::new(11.0, 10.0, 8.5) }

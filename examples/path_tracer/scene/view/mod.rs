@@ -8,8 +8,9 @@ use glam::Vec3;
 
 use super::{Scene, Shape};
 
-/// Gives the scene a camera if it has none, and light if nothing shines. `closest_hit` answers a
-/// ray with its first hit: t and the index of the shape.
+/// Gives the scene a camera if it has none, and light if nothing shines.
+///
+/// `closest_hit` returns the first hit of a ray: t and the index of the shape.
 pub fn complete(scene: &mut Scene, closest_hit: impl Fn(&Ray) -> Option<(f32, usize)>) {
     let survey = Survey::new(scene, &closest_hit);
     let camera = scene.camera.unwrap_or_else(|| viewpoint::choose(&survey));
@@ -21,12 +22,12 @@ pub fn complete(scene: &mut Scene, closest_hit: impl Fn(&Ray) -> Option<(f32, us
         scene.lights = lights;
         scene.sky = Some(sky);
     } else if scene.sky.is_none() && lighting::is_sunlight_only(scene) {
-        // Where the sun shines there is a sky, and shadows are not black.
+        // Where the sun shines, there is a sky, and shadows are not black.
         scene.sky = Some(super::Sky::day(up).scaled(0.25));
     }
 }
 
-/// What there is to see, and where.
+/// The scene, its ray query, and the region to look at.
 struct Survey<'a> {
     scene: &'a Scene,
     closest_hit: &'a dyn Fn(&Ray) -> Option<(f32, usize)>,
@@ -35,7 +36,7 @@ struct Survey<'a> {
     up: Vec3,
 }
 
-/// Where a ray ends.
+/// The first hit of a ray.
 #[derive(Clone, Copy)]
 struct Sight {
     shape: usize,
@@ -43,7 +44,7 @@ struct Sight {
     point: Vec3,
     /// The geometric normal, on the side that the ray came from.
     normal: Vec3,
-    /// Whether the ray met the front, so that its origin is not inside of something solid.
+    /// Whether the ray met the front, so that its origin is not inside a solid.
     front: bool,
 }
 
@@ -54,7 +55,7 @@ impl<'a> Survey<'a> {
         Self { scene, closest_hit, region, up }
     }
 
-    /// What the ray sees first.
+    /// Returns the first hit of the ray.
     fn look(&self, ray: &Ray) -> Option<Sight> {
         let (t, index) = (self.closest_hit)(ray)?;
         let point = Vec3::from(ray.at(t));
@@ -63,7 +64,9 @@ impl<'a> Survey<'a> {
         Some(Sight { shape: index, t, point, normal: if front { normal } else { -normal }, front })
     }
 
-    /// Whether nothing blocks the way from a point seen into `direction`, up to `distance`.
+    /// Returns whether nothing blocks the way from a visible point into `direction`.
+    ///
+    /// The way ends at t = `distance`.
     fn is_clear(&self, from: &Sight, direction: Vec3, distance: f32) -> bool {
         let start = from.point + 1e-4 * self.region.diagonal() * from.normal;
         let ray = Ray::new(start, direction).with_interval(0.0, distance);
@@ -71,12 +74,12 @@ impl<'a> Survey<'a> {
     }
 }
 
-/// A box.
+/// A box in the scene.
 #[derive(Clone, Copy)]
 struct Region {
     min: Vec3,
     max: Vec3,
-    /// Whether there are shapes far outside of it.
+    /// Whether there are shapes far outside the box.
     is_part: bool,
 }
 
@@ -86,8 +89,10 @@ impl Region {
         Self { min: all.min.into(), max: all.max.into(), is_part: false }
     }
 
-    /// The box of all shapes; or, if most shapes crowd into a small part of it, that part: a ship
-    /// in front of a backdrop is what the picture is about, not the backdrop.
+    /// Returns the box of all shapes, or a small part of it that holds most shapes.
+    ///
+    /// For example, a ship in front of a backdrop is the subject of the
+    /// picture, and the backdrop is not.
     fn of_interest(shapes: &[Shape]) -> Self {
         let all = Self::of_all(shapes);
         let mut low = Vec3::ZERO;
@@ -103,7 +108,7 @@ impl Region {
         if crowd.diagonal() < 0.65 * all.diagonal() { crowd } else { all }
     }
 
-    /// +y, unless the box is flat in z: what lies flat, lies on the ground.
+    /// Returns +y, or +z if the box is flat in z: a flat scene lies on the ground.
     fn likely_up(&self) -> Vec3 {
         let size = self.max - self.min;
         if size.z < 0.4 * size.x.min(size.y) { Vec3::Z } else { Vec3::Y }
@@ -117,19 +122,19 @@ impl Region {
         self.max.distance(self.min)
     }
 
-    /// The point at these fractions of the box's sides.
+    /// Returns the point at these fractions of the box's sides.
     fn at(&self, fractions: Vec3) -> Vec3 {
         self.min + fractions * (self.max - self.min)
     }
 
-    /// Whether the point is in the box, or outside by no more than rounding.
+    /// Returns whether the point is in the box, or outside by no more than rounding.
     fn contains_nearly(&self, point: Vec3) -> bool {
         let slack = 1e-3 * (self.max - self.min);
         point.cmpge(self.min - slack).all() && point.cmple(self.max + slack).all()
     }
 }
 
-/// `count` directions spread evenly over the sphere: a Fibonacci lattice.
+/// Returns `count` directions spread evenly over the sphere: a Fibonacci lattice.
 fn directions(count: usize) -> impl Iterator<Item = Vec3> {
     let golden_angle = std::f32::consts::PI * (3.0 - 5.0_f32.sqrt());
     (0..count).map(move |i| {
@@ -140,7 +145,9 @@ fn directions(count: usize) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// The middles of `columns` by `rows` cells of a picture, as fractions of its sides.
+/// Returns the middles of the cells of a picture, as fractions of its sides.
+///
+/// There are `columns` by `rows` cells.
 fn raster(columns: usize, rows: usize) -> impl Iterator<Item = glam::Vec2> {
     (0..columns * rows).map(move |i| {
         let (x, y) = (i % columns, i / columns);

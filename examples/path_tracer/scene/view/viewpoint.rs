@@ -1,4 +1,4 @@
-//! Where to put the camera: inside of a room, or in front of an object.
+//! The viewpoint: inside a room, or in front of an object.
 
 use std::collections::HashSet;
 use std::f32::consts::TAU;
@@ -9,18 +9,21 @@ use glam::{Vec2, Vec3};
 use super::super::Camera;
 use super::{Survey, directions, raster};
 
-/// Width over height of the picture that viewpoints are judged by.
+/// Width over height of the pictures by which viewpoints are judged.
 const ASPECT: f32 = 4.0 / 3.0;
-/// Vertical fields of view, in radians.
+/// The vertical field of view in a room, in radians.
 const ROOM_FOV: f32 = 1.1;
+/// The vertical field of view of an object, in radians.
 const OBJECT_FOV: f32 = 0.7;
 
-/// A camera that sees the scene well.
+/// Chooses a camera that sees the scene well.
 pub fn choose(survey: &Survey<'_>) -> Camera {
     in_a_room(survey).unwrap_or_else(|| before_an_object(survey))
 }
 
-/// A viewpoint inside, with a long free view; `None` if no point of the scene is in a room.
+/// Chooses a viewpoint in a room, with a long free view.
+///
+/// `None` if no point of the scene is in a room.
 fn in_a_room(survey: &Survey<'_>) -> Option<Camera> {
     if survey.region.is_part {
         return None;
@@ -40,7 +43,7 @@ fn in_a_room(survey: &Survey<'_>) -> Option<Camera> {
     best.1
 }
 
-/// Points spread over the region, at about the height of eyes.
+/// Returns points spread over the region, at about the height of eyes.
 fn grid(survey: &Survey<'_>) -> impl Iterator<Item = Vec3> {
     const STEPS: usize = 7;
     let up = survey.up.abs();
@@ -51,9 +54,10 @@ fn grid(survey: &Survey<'_>) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// How much space there is around a point of a room; `None` if it is not in a room, that is, not
-/// surrounded by surfaces that face it at some distance. In the inside of a solid object rays meet
-/// back faces; beside an object they leave the region.
+/// Returns the space around a point of a room; `None` if it is not in a room.
+///
+/// A point in a room is surrounded by surfaces that face it at some distance. Inside a solid
+/// object, rays meet back faces; beside an object, they leave the region.
 fn space_around(survey: &Survey<'_>, point: Vec3) -> Option<f32> {
     let rays = 48;
     let mut facing = 0;
@@ -68,8 +72,10 @@ fn space_around(survey: &Survey<'_>, point: Vec3) -> Option<f32> {
     (facing * 10 >= rays * 7 && space > 0.07).then_some(space)
 }
 
-/// How much there is to see: long views count, in the middle of the picture twice, and so does each
-/// shape, since bare walls have few. What is near the lens, or turns its back, is in the way.
+/// Returns a score of the view, which is higher the more there is to see.
+///
+/// Long views count, those in the middle of the picture twice. The number of shapes counts too,
+/// since bare walls have few. Surfaces near the lens, and back faces, are in the way.
 fn view_quality(survey: &Survey<'_>, camera: &Camera) -> f32 {
     let diagonal = survey.region.diagonal();
     let mut depth = 0.0;
@@ -89,8 +95,10 @@ fn view_quality(survey: &Survey<'_>, camera: &Camera) -> f32 {
     depth * (10 + shapes.len()) as f32
 }
 
-/// A viewpoint from which all that is in the region fills the picture, on the side where the object
-/// covers most of it; the front (+z, or -y if z is up) if there is little between them.
+/// Chooses a viewpoint from which the region fills the picture.
+///
+/// It is on the side where the object covers most of the picture. If the sides differ little, it is
+/// the front (+z, or -y if z is up).
 fn before_an_object(survey: &Survey<'_>) -> Camera {
     let mut best = (f32::NEG_INFINITY, None);
     for (i, direction) in around(survey.up, 0.4, 8).enumerate() {
@@ -108,7 +116,9 @@ fn before_an_object(survey: &Survey<'_>) -> Camera {
     best.1.unwrap_or_else(|| framing(survey, Vec3::Z))
 }
 
-/// The camera that looks against `backward`, as close as it can be with the object in the picture.
+/// Returns the camera that looks against `backward` and has the object in view.
+///
+/// It is as close as it can be.
 fn framing(survey: &Survey<'_>, backward: Vec3) -> Camera {
     let backward = backward.normalize_or(Vec3::Z);
     let center = survey.region.center();
@@ -122,7 +132,7 @@ fn framing(survey: &Survey<'_>, backward: Vec3) -> Camera {
         .map(|point| Vec3::new(point.dot(right), point.dot(above), point.dot(backward)))
         .collect();
 
-    // Aim at the middle of what is seen; then step back until each point is inside the picture.
+    // Aims at the middle of the visible points, then steps back until all are in the picture.
     let low = points.iter().copied().fold(Vec3::INFINITY, Vec3::min);
     let high = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
     let middle = if low.cmple(high).all() { 0.5 * (low + high) } else { Vec3::ZERO };
@@ -136,7 +146,9 @@ fn framing(survey: &Survey<'_>, backward: Vec3) -> Camera {
     Camera::look_at(target + distance * backward, target, survey.up, OBJECT_FOV)
 }
 
-/// `count` horizontal directions all around, the first one `turn` radians off the front.
+/// Returns `count` horizontal directions all around.
+///
+/// The first one is `turn` radians off the front.
 fn around(up: Vec3, turn: f32, count: usize) -> impl Iterator<Item = Vec3> {
     let front = if up == Vec3::Z { Vec3::NEG_Y } else { Vec3::Z };
     let right = front.cross(up);
