@@ -9,7 +9,7 @@
 //! - nodes and leaves.
 //!
 //! So a build touches a quarter to a third fewer pages (measured:
-//! docs/decisions.md, 34).
+//! docs/decisions.md, 40).
 
 use crate::parallel::filled;
 use alloc::vec::Vec;

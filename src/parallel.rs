@@ -35,7 +35,7 @@ pub(crate) const PART: usize = 1 << 12;
 ///
 /// Each part takes a while. Without help, the calling thread does the parts on the spot: small
 /// builds never wake a thread, and a pool of one thread is not entered. To enter it for every call
-/// took 1 to 4 ms of a build (measured: docs/decisions.md, 33).
+/// took 1 to 4 ms of a build (measured: docs/decisions.md, 39).
 #[cfg(feature = "rayon")]
 fn has_help(parts: usize) -> bool {
     parts > 1 && rayon_core::current_num_threads() > 1

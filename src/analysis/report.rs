@@ -1,7 +1,7 @@
 //! The report on a tree: counts, depths, leaf sizes, SAH cost, bytes.
 
 use crate::geometry::{Aabb, Scalar};
-use crate::layout::{Outline, Part};
+use crate::layout::{Encoding, Outline, Part, WideTree};
 use crate::tree::Tree;
 use alloc::vec::Vec;
 use core::fmt;
@@ -126,5 +126,11 @@ impl<S: Scalar> Tree<S> {
     /// Returns the shape and the estimated cost of the tree.
     pub fn report(&self) -> TreeReport {
         TreeReport::new(self)
+    }
+}
+
+impl<S: Scalar, const N: usize, F: Encoding<S, N>> fmt::Debug for WideTree<S, N, F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("WideTree").field("report", &TreeReport::new(self)).finish_non_exhaustive()
     }
 }

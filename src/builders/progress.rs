@@ -35,20 +35,20 @@ impl fmt::Debug for ProgressCallback {
 
 /// The progress of a build.
 pub(crate) struct Progress<'w> {
-    watcher: &'w (dyn Fn(f64) -> BuildControl + Sync),
+    callback: &'w (dyn Fn(f64) -> BuildControl + Sync),
     total: AtomicUsize,
     placed: AtomicUsize,
     /// The strictest answer so far, as a number.
-    pace: AtomicU8,
+    control: AtomicU8,
 }
 
 impl<'w> Progress<'w> {
-    pub fn new(watcher: &'w (dyn Fn(f64) -> BuildControl + Sync)) -> Self {
+    pub fn new(callback: &'w (dyn Fn(f64) -> BuildControl + Sync)) -> Self {
         Self {
-            watcher,
+            callback,
             total: AtomicUsize::new(1),
             placed: AtomicUsize::new(0),
-            pace: AtomicU8::new(BuildControl::Steady as u8),
+            control: AtomicU8::new(BuildControl::Steady as u8),
         }
     }
 
@@ -64,20 +64,20 @@ impl<'w> Progress<'w> {
 
     /// Calls the progress callback, and returns the strictest answer so far.
     pub fn poll(&self) -> BuildControl {
-        let pace = match self.pace() {
+        let control = match self.control() {
             BuildControl::Stop => BuildControl::Stop,
             // With extra references, more may be placed than there are primitives.
             _ => {
-                (self.watcher)((self.placed.load(Relaxed) as f64 / self.total.load(Relaxed) as f64).min(1.0))
+                (self.callback)((self.placed.load(Relaxed) as f64 / self.total.load(Relaxed) as f64).min(1.0))
             }
         };
-        self.pace.fetch_max(pace as u8, Relaxed);
-        self.pace()
+        self.control.fetch_max(control as u8, Relaxed);
+        self.control()
     }
 
     /// Returns the strictest answer so far.
-    fn pace(&self) -> BuildControl {
-        match self.pace.load(Relaxed) {
+    fn control(&self) -> BuildControl {
+        match self.control.load(Relaxed) {
             0 => BuildControl::Steady,
             1 => BuildControl::Hurry,
             _ => BuildControl::Stop,

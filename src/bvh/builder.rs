@@ -194,9 +194,9 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
 
     /// Sets the progress callback, which controls how the build goes on.
     ///
-    /// The build calls `watcher` with its progress, from 0 to 1, at least once every few thousand
+    /// The build calls `callback` with its progress, from 0 to 1, at least once every few thousand
     /// primitives, from several threads. It goes on as the returned [`BuildControl`] says.
-    /// Optimisation calls `watcher` too, with 1. The layout, which follows, does not.
+    /// Optimisation calls `callback` too, with 1. The layout, which follows, does not.
     ///
     /// ```
     /// use bvhkit::{Bvh, BuildError, BuildControl, Sphere};
@@ -210,8 +210,8 @@ impl<P: Primitive, H: Heuristic<P::Scalar>, L: Layout<P>> Builder<P, H, L> {
     /// );
     /// ```
     #[must_use]
-    pub fn progress(self, watcher: impl Fn(f64) -> BuildControl + Send + Sync + 'static) -> Self {
-        self.set(|options| options.watcher = Some(ProgressCallback(Arc::new(watcher))))
+    pub fn progress(self, callback: impl Fn(f64) -> BuildControl + Send + Sync + 'static) -> Self {
+        self.set(|options| options.callback = Some(ProgressCallback(Arc::new(callback))))
     }
 
     /// Sets the time after which the build hurries, counted from the call of `build`.

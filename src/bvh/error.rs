@@ -16,7 +16,7 @@ pub enum BuildError {
         /// The index of the primitive in the input.
         index: usize,
         /// The fault of its box.
-        flaw: InvalidBox,
+        reason: InvalidBox,
     },
     /// The input has more primitives than 32 bits can number, 2^32 - 1.
     ///
@@ -44,8 +44,8 @@ pub enum BuildError {
 impl fmt::Display for BuildError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::InvalidPrimitive { index, flaw } => {
-                let what = match flaw {
+            Self::InvalidPrimitive { index, reason } => {
+                let what = match reason {
                     InvalidBox::NanBox => "a bounding box with a NaN",
                     InvalidBox::InfiniteBox => "a bounding box with an infinite bound",
                     InvalidBox::InvertedBox => "a bounding box whose minimum is above its maximum",
@@ -64,7 +64,7 @@ impl fmt::Display for BuildError {
             Self::NoInstructionSet(set) => {
                 write!(f, "no {set} here: InstructionSet::available() tells what there is")
             }
-            Self::Stopped => f.write_str("the build was stopped by its watcher"),
+            Self::Stopped => f.write_str("the build was stopped by its callback"),
             Self::ThreadPool(error) => error.fmt(f),
         }
     }

@@ -69,8 +69,8 @@ impl<S: Scalar> Job<'_, S> {
             block_size: needs.block_size,
             max_depth: MAX_DEPTH,
         };
-        let pace = |progress| self.pace(progress);
-        let progress = Progress::new(&pace);
+        let control = |progress| self.control(progress);
+        let progress = Progress::new(&control);
         let mut tree = build_tree(&mut workspace.build, &rules, &progress).ok_or(BuildError::Stopped)?;
         workspace.hand_over();
         let optimise = options.optimise.or_else(|| heuristic.optimise());
@@ -112,13 +112,13 @@ impl<S: Scalar> Job<'_, S> {
         });
         let mut skipped = Vec::new();
         if is_flawed.into_inner() {
-            let flaws =
+            let reasons =
                 references.iter().filter_map(|reference| Some((reference.index, reference.invalid_box()?)));
             match self.options.on_invalid {
-                OnInvalid::Skip => skipped = flaws.map(|(index, _)| index).collect(),
+                OnInvalid::Skip => skipped = reasons.map(|(index, _)| index).collect(),
                 OnInvalid::Reject => {
-                    if let Some((index, flaw)) = flaws.min_by_key(|&(index, _)| index) {
-                        return Err(BuildError::InvalidPrimitive { index: index as usize, flaw });
+                    if let Some((index, reason)) = reasons.min_by_key(|&(index, _)| index) {
+                        return Err(BuildError::InvalidPrimitive { index: index as usize, reason });
                     }
                 }
             }
@@ -128,13 +128,13 @@ impl<S: Scalar> Job<'_, S> {
     }
 
     /// Returns the stricter answer of the progress callback and the clock.
-    fn pace(&self, progress: f64) -> BuildControl {
-        let watcher = self.options.watcher.as_ref();
-        let pace = watcher.map_or(BuildControl::Steady, |ProgressCallback(watcher)| watcher(progress));
+    fn control(&self, progress: f64) -> BuildControl {
+        let callback = self.options.callback.as_ref();
+        let control = callback.map_or(BuildControl::Steady, |ProgressCallback(callback)| callback(progress));
         #[cfg(feature = "std")]
         if self.clock.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
-            return pace.max(BuildControl::Hurry);
+            return control.max(BuildControl::Hurry);
         }
-        pace
+        control
     }
 }

@@ -27,7 +27,7 @@ pub struct Options {
     pub threads: Option<usize>,
     pub on_invalid: OnInvalid,
     pub optimise: Option<Optimise>,
-    pub(crate) watcher: Option<ProgressCallback>,
+    pub(crate) callback: Option<ProgressCallback>,
     #[cfg(feature = "std")]
     pub time_budget: Option<Duration>,
     pub instruction_set: Option<InstructionSet>,

@@ -13,7 +13,7 @@ use crate::geometry::Scalar;
 /// No preset uses [`SweepSah`](crate::heuristic::SweepSah), which tries every split. It takes ten
 /// times as long as bins, and in some scenes greedy exactness misleads it. Nor does any preset use
 /// [`SpatialSah`](crate::heuristic::SpatialSah): in nodes of 16 children, its reinserted trees are
-/// neither clearly better nor worse than those of `High` (measured: docs/decisions.md, 32).
+/// neither clearly better nor worse than those of `High` (measured: docs/decisions.md, 38).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Quality {
@@ -28,7 +28,7 @@ pub enum Quality {
     /// [`BinnedSah`] with 16 bins; up to 10 % of the nodes reinserted, in 16 rounds.
     ///
     /// For scenes that are built once and traced for minutes: rays take 4 % fewer steps than with
-    /// `Balanced`, in the mean over six scenes (measured: docs/decisions.md, 32).
+    /// `Balanced`, in the mean over six scenes (measured: docs/decisions.md, 38).
     High,
 }
 

@@ -20,7 +20,8 @@ pub(crate) struct RayFrame<S> {
     pub axes: [Axis; 3],
     /// The direction in the order of `axes`, scaled by a power of two to about 1.
     ///
-    /// Products with the scaled direction neither overflow nor underflow.
+    /// Products with the scaled direction do not overflow, and lose nothing to underflow unless a
+    /// factor is far smaller than the other coordinates.
     pub direction: [S; 3],
     /// The unscaled direction on the third axis.
     pub forward: S,

@@ -1,6 +1,6 @@
 //! The two scalars, `f32` and `f64`, behind one sealed trait.
 
-use crate::simd::{Halves, Isa, Lanes};
+use crate::simd::ScalarLanes;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
@@ -76,22 +76,6 @@ pub trait Scalar:
     fn to_ordered_bits(self) -> u64;
 }
 
-/// The vector types of a scalar.
-pub trait ScalarLanes: Sized {
-    /// Four scalars side by side, for the slab test of two boxes.
-    type Lanes4: crate::simd::Lanes4<Self>;
-    /// Four lanes of the instruction set `I`.
-    type Times4<I: Isa>: Lanes<Self, Isa = I>;
-    /// Eight lanes of the instruction set `I`.
-    type Times8<I: Isa>: Lanes<Self, Isa = I> + Halves<Self::Times4<I>>;
-    /// Sixteen lanes of the instruction set `I`.
-    type Times16<I: Isa>: Lanes<Self, Isa = I>;
-    /// Eight lanes, to compute with beside sixteen.
-    ///
-    /// With AVX-512 the vector holds each `f32` twice (see `simd::x86::doubled`).
-    type Times8Doubled<I: Isa>: Lanes<Self, Isa = I>;
-}
-
 /// Constants and operations of scalars that this crate uses, and users do not.
 pub trait ScalarParts: Sized {
     /// Whether no scalar is wider.
@@ -140,8 +124,7 @@ pub(crate) fn max<S: Scalar>(a: S, b: S) -> S {
 
 macro_rules! scalar {
     (
-        $scalar:ident, $lanes4:ty, [$times4:ident, $times8:ident, $times16:ident, $times8_doubled:ident],
-        $bits:ident, $signed:ident, $libm_sqrt:ident, $libm_fma:ident, $large_area:expr, $large_volume:expr
+        $scalar:ident, $bits:ident, $signed:ident, $libm_fma:ident, $large_area:expr, $large_volume:expr
     ) => {
         impl Scalar for $scalar {
             const ZERO: Self = 0.0;
@@ -163,10 +146,7 @@ macro_rules! scalar {
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
-                #[cfg(feature = "std")]
-                return $scalar::sqrt(self);
-                #[cfg(not(feature = "std"))]
-                return libm::$libm_sqrt(self);
+                self.rounded_sqrt()
             }
             #[inline(always)]
             fn is_finite(self) -> bool {
@@ -207,14 +187,6 @@ macro_rules! scalar {
                 let mask = ((bits as $signed) >> ($bits::BITS - 1)) as $bits | (1 << ($bits::BITS - 1));
                 u64::from(bits ^ mask)
             }
-        }
-
-        impl ScalarLanes for $scalar {
-            type Lanes4 = $lanes4;
-            type Times4<I: Isa> = I::$times4;
-            type Times8<I: Isa> = I::$times8;
-            type Times16<I: Isa> = I::$times16;
-            type Times8Doubled<I: Isa> = I::$times8_doubled;
         }
 
         impl ScalarParts for $scalar {
@@ -265,28 +237,8 @@ macro_rules! scalar {
     };
 }
 
-scalar!(
-    f32,
-    crate::simd::F32Lanes4,
-    [F32x4, F32x8, F32x16, F32x8Doubled],
-    u32,
-    i32,
-    sqrtf,
-    fmaf,
-    f32::from_bits((127 + 60) << 23),
-    f32::from_bits((127 + 100) << 23)
-);
-scalar!(
-    f64,
-    [f64; 4],
-    [F64x4, F64x8, F64x16, F64x8],
-    u64,
-    i64,
-    sqrt,
-    fma,
-    f64::from_bits((1023 + 600) << 52),
-    f64::from_bits((1023 + 900) << 52)
-);
+scalar!(f32, u32, i32, fmaf, f32::from_bits((127 + 60) << 23), f32::from_bits((127 + 100) << 23));
+scalar!(f64, u64, i64, fma, f64::from_bits((1023 + 600) << 52), f64::from_bits((1023 + 900) << 52));
 
 #[cfg(test)]
 mod tests {

@@ -8,11 +8,9 @@ use super::compact::Compact;
 use super::encoding::{Encoding, Node};
 use super::node_arena::NodeArena;
 use super::packed::Packed;
-use crate::analysis::TreeReport;
 use crate::geometry::{Aabb, Scalar};
 use crate::leaf::LEAF_WIDTH;
 use crate::simd::Window;
-use core::fmt;
 
 /// A reference to a node or a leaf.
 ///
@@ -144,7 +142,9 @@ pub struct WideTree<S = f32, const N: usize = 16, F = Packed> {
 /// Compressed Wide BVHs, HPG 2017.
 pub type CompactTree<S = f32, const N: usize = 16> = WideTree<S, N, Compact>;
 
-/// The maximum number of deferred children on any path; sizes the stack.
+/// The maximum number of deferred children on the path to any node; sizes the stack.
+///
+/// The node itself may defer as many as it has children: the stack has room for them beyond this.
 pub(crate) const MAX_STACK: usize = 448;
 
 /// An index that no primitive has.
@@ -157,12 +157,6 @@ impl<S: Scalar, const N: usize, F: Encoding<S, N>> PartialEq for WideTree<S, N, 
             && self.aabb == other.aabb
             && self.encoding == other.encoding
             && self.arena.words() == other.arena.words()
-    }
-}
-
-impl<S: Scalar, const N: usize, F: Encoding<S, N>> fmt::Debug for WideTree<S, N, F> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("WideTree").field("report", &TreeReport::new(self)).finish_non_exhaustive()
     }
 }
 

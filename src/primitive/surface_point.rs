@@ -78,7 +78,7 @@ impl<S: Scalar> SurfacePoint<S> {
     ///
     /// In [`Watertight`](crate::Watertight) and [`Precise`](crate::Precise) mode, 0 of 2,961,717
     /// rays hit the triangle that they leave. [`Fast`](crate::Fast) has such hits (measured:
-    /// docs/decisions.md, 28).
+    /// docs/decisions.md, 34).
     #[must_use]
     pub fn spawn(&self, direction: impl Into<[S; 3]>) -> Ray<S> {
         let direction = direction.into();
@@ -88,7 +88,7 @@ impl<S: Scalar> SurfacePoint<S> {
         // Refused: the offset of Wachter and Binder (A Fast and Robust Method for Avoiding
         // Self-Intersection, Ray Tracing Gems, 2019), and the error bound that the book derives for
         // interpolation in `f32`. Both start rays farther from the surface and gain nothing in the
-        // modes without such hits (measured: docs/decisions.md, 28).
+        // modes without such hits (measured: docs/decisions.md, 34).
         let origin = [0, 1, 2].map(|axis| {
             let offset = (n[axis] * distance).xor_sign(along);
             let moved = self.position[axis] + offset;

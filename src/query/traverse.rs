@@ -69,9 +69,9 @@ pub trait Traverse<P: Intersect>: Layout<P> {
 
 /// A kernel of the leaves of a type whose operands tell all about its primitives.
 macro_rules! in_lanes {
-    ($primitive:ty, $form:ty, $kernel:ident) => {
+    ($primitive:ty, $encoding:ty, $kernel:ident) => {
         const {
-            <$form as EncodingKernels<_>>::IN_LANES[<<$primitive as Intersect>::Leaf as LeafKind<
+            <$encoding as EncodingKernels<_>>::IN_LANES[<<$primitive as Intersect>::Leaf as LeafKind<
                 _,
                 <$primitive as Intersect>::Payload,
             >>::KERNEL as usize]
@@ -114,7 +114,7 @@ impl<P: Intersect, F: EncodingKernels<P::Scalar>> Traverse<P> for WideTree<P::Sc
             (hit_of::<P>(&found), steps)
         } else {
             let (mut ray, mut leaf_test) =
-                (self.asked_ray(backend, ray), ClosestTest { primitives, payload: None });
+                (self.ray_state(backend, ray), ClosestTest { primitives, payload: None });
             (const { F::DYN.closest })(self, backend, &mut ray, &mut leaf_test);
             (leaf_test.hit(&ray), ray.steps)
         }
@@ -128,7 +128,7 @@ impl<P: Intersect, F: EncodingKernels<P::Scalar>> Traverse<P> for WideTree<P::Sc
             (found.index != NO_PRIMITIVE, steps)
         } else {
             let (mut ray, mut leaf_test) =
-                (self.asked_ray(backend, ray), AnyTest { primitives, is_hit: false });
+                (self.ray_state(backend, ray), AnyTest { primitives, is_hit: false });
             (const { F::DYN.any })(self, backend, &mut ray, &mut leaf_test);
             (leaf_test.is_hit, ray.steps)
         }
@@ -144,7 +144,7 @@ impl<P: Intersect, F: EncodingKernels<P::Scalar>> Traverse<P> for WideTree<P::Sc
         if <P::Leaf as LeafKind<P::Scalar, P::Payload>>::IS_SETTLED_IN_LANES {
             in_lanes!(P, F, open)(self, backend, &Primitives(leaf_test.primitives), ray, ahead)
         } else {
-            let mut ray = self.asked_ray(backend, ray);
+            let mut ray = self.ray_state(backend, ray);
             (const { F::DYN.open })(self, backend, &mut ray, leaf_test, ahead);
             ray.steps
         }
@@ -152,7 +152,7 @@ impl<P: Intersect, F: EncodingKernels<P::Scalar>> Traverse<P> for WideTree<P::Sc
 }
 
 impl<S: Scalar, F: EncodingKernels<S>> WideTree<S, WIDTH, F> {
-    fn asked_ray(&self, backend: Backend, ray: &Ray<S>) -> RayState<S> {
+    fn ray_state(&self, backend: Backend, ray: &Ray<S>) -> RayState<S> {
         RayState { sieve: self.is_ordinary().then_some(backend), ..RayState::new(ray) }
     }
 }

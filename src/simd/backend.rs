@@ -97,11 +97,12 @@ pub trait Routine {
         d: Self::D,
     ) -> Self::Output;
 
-    /// Runs in place of [`run`](Self::run) where that is not compiled.
+    /// Gives the same output by other code.
     ///
-    /// This is so for the baseline of x86, since processors of the last ten years have more, and
-    /// for the portable path.
-    fn run_otherwise(backend: Backend, a: Self::A, b: Self::B, c: Self::C, d: Self::D) -> Self::Output;
+    /// It runs where [`run`](Self::run) is not compiled: for the baseline of x86, since processors
+    /// of the last ten years have more, and for the portable path. `run` itself may leave
+    /// arguments to it that are rare.
+    fn run_general(backend: Backend, a: Self::A, b: Self::B, c: Self::C, d: Self::D) -> Self::Output;
 }
 
 macro_rules! backends {
@@ -217,7 +218,7 @@ fn call<I: Isa, R: Routine>(isa: I, backend: Backend, a: R::A, b: R::B, c: R::C,
     if const { I::RUNS_ROUTINES } {
         isa.call::<R, Single>(backend, a, b, c, d)
     } else {
-        R::run_otherwise(backend, a, b, c, d)
+        R::run_general(backend, a, b, c, d)
     }
 }
 

@@ -1,7 +1,6 @@
 //! Vectors: one trait for all code, and a second one for kernels alone.
 
-use super::Isa;
-use crate::geometry::Scalar;
+use super::{Isa, ScalarLanes};
 use core::mem::MaybeUninit;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
@@ -108,16 +107,16 @@ pub trait KernelLanes<S>: Sized {
     fn to_integers(self) -> [i32; 3]
     where
         Self: Copy,
-        S: Scalar,
+        S: ScalarLanes,
     {
-        [self.lane(0).to_f64() as i32, self.lane(1).to_f64() as i32, self.lane(2).to_f64() as i32]
+        [self.lane(0).to_i32(), self.lane(1).to_i32(), self.lane(2).to_i32()]
     }
     /// Sorts two or more children by distance and returns the lane of the nearest.
     ///
     /// Takes the mask of the children, all children, and two windows of the traversal stack. No
     /// distance is below +0. Writes all children of the mask to the windows, the farthest
     /// first, and with each an entry that is never larger than its distance. Returns `None`
-    /// where there is no fast way.
+    /// where there is no fast way, and writes nothing then: with AVX-512 for more than eight.
     #[inline(always)]
     fn sort(self, _: u32, _: &[u32], _: &mut Window<u32>, _: &mut Window<S>) -> Option<u32> {
         None
@@ -165,39 +164,39 @@ pub trait Halves<H>: Sized {
 /// The lanes for nodes of 4, 8 or 16 children.
 pub trait Width: 'static {
     /// A vector with one scalar for each child of a node.
-    type Lanes<S: Scalar, I: Isa>: Lanes<S, Isa = I>;
+    type Lanes<S: ScalarLanes, I: Isa>: Lanes<S, Isa = I>;
 }
 
 /// A number of children of a node, as a type.
 pub struct Count<const N: usize>;
 
 impl Width for Count<4> {
-    type Lanes<S: Scalar, I: Isa> = S::Times4<I>;
+    type Lanes<S: ScalarLanes, I: Isa> = S::Times4<I>;
 }
 impl Width for Count<8> {
-    type Lanes<S: Scalar, I: Isa> = S::Times8<I>;
+    type Lanes<S: ScalarLanes, I: Isa> = S::Times8<I>;
 }
 impl Width for Count<16> {
-    type Lanes<S: Scalar, I: Isa> = S::Times16<I>;
+    type Lanes<S: ScalarLanes, I: Isa> = S::Times16<I>;
 }
 
 /// The vectors in which the primitives of a leaf are tested.
 pub trait LeafLanes: 'static {
     /// A vector with one scalar for each primitive.
-    type Lanes<S: Scalar, I: Isa>: Lanes<S, Isa = I>;
+    type Lanes<S: ScalarLanes, I: Isa>: Lanes<S, Isa = I>;
 }
 
 /// Vectors of as many lanes as a leaf has primitives.
 pub struct Single;
 
-/// Vectors as wide as those of a node's children, which hold each lane twice.
+/// Vectors of `f32` as wide as those of a node's children, which hold each lane twice.
 ///
-/// See `x86::doubled`.
+/// Other scalars and instruction sets have single ones in their place. See `x86::doubled`.
 pub struct Doubled;
 
 impl LeafLanes for Single {
-    type Lanes<S: Scalar, I: Isa> = S::Times8<I>;
+    type Lanes<S: ScalarLanes, I: Isa> = S::Times8<I>;
 }
 impl LeafLanes for Doubled {
-    type Lanes<S: Scalar, I: Isa> = S::Times8Doubled<I>;
+    type Lanes<S: ScalarLanes, I: Isa> = S::Times8Doubled<I>;
 }

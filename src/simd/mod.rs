@@ -14,6 +14,7 @@ mod lanes;
 mod pair;
 mod pairs;
 mod prefetch;
+mod scalar_lanes;
 #[cfg(test)]
 mod tests;
 mod vector;
@@ -56,3 +57,4 @@ pub use lanes::{Halves, KernelLanes, Lanes, LeafLanes};
 pub(crate) use pair::Pair;
 pub use pairs::{F32Lanes4, Lanes4};
 pub(crate) use prefetch::{prefetch, prefetch_ahead};
+pub use scalar_lanes::ScalarLanes;

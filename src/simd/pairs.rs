@@ -44,7 +44,8 @@ macro_rules! portable {
             }
             #[inline(always)]
             fn max(self, other: Self) -> Self {
-                let of = |lane: usize| crate::geometry::max(self[lane], other[lane]);
+                let larger = |a, b| if a > b { a } else { b };
+                let of = |lane: usize| larger(self[lane], other[lane]);
                 [of(0), of(1), of(2), of(3)]
             }
             #[inline(always)]

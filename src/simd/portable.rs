@@ -35,7 +35,7 @@ macro_rules! four {
             div(a, b) = each!(k => a[k] / b[k]);
             mul_add(a, b, c) = each!(k => a[k] * b[k] + c[k]);
             abs(a) = each!(k => a[k].abs());
-            sqrt(a) = each!(k => crate::geometry::Scalar::sqrt(a[k]));
+            sqrt(a) = each!(k => crate::simd::ScalarLanes::rounded_sqrt(a[k]));
             min(a, b) = each!(k => if a[k] < b[k] { a[k] } else { b[k] });
             max(a, b) = each!(k => if a[k] > b[k] { a[k] } else { b[k] });
             lt(a, b) = each!(k => a[k] < b[k]);

@@ -41,8 +41,9 @@ pub(super) struct BoxTest<S, L, const AHEAD: bool> {
     t_min: S,
     /// Whether boxes may be compared as integers, as the module describes.
     ///
-    /// The inverses are finite, and neither t_min nor t_max has a minus sign. Later limits have
-    /// none either, since no hit's t has one (see `primitive::accept` and the packed leaves).
+    /// The inverses are finite, `t_min` above is +0 or more, and t_max has no minus sign. Later
+    /// limits have none either, since no hit's t has one (see `primitive::accept` and the packed
+    /// leaves).
     are_ordered_by_bits: bool,
 }
 
@@ -93,7 +94,8 @@ impl<S: Scalar, L: Lanes<S>, const AHEAD: bool> BoxTest<S, L, AHEAD> {
 
     /// Returns where the ray enters the children's boxes, and the lanes of boxes met.
     ///
-    /// Entries are at t_min or later. Only boxes that the ray meets up to `limit` count as met.
+    /// Entries are at t_min or later, unless the ray looks behind its origin. Only boxes that the
+    /// ray meets up to `limit` count as met.
     #[inline(always)]
     pub fn enter<const N: usize>(&self, node: &impl WideNode<S, N>, ray: &Ray<S>, limit: S) -> (L, u32) {
         let isa = self.origin[0].isa();

@@ -15,7 +15,7 @@ const FEW: usize = 4;
 /// There are at least two, which the ray enters at `near` in the lanes `met`. Distances within 16
 /// ulps of one another may change places.
 ///
-/// They are sorted in registers where the lanes can sort, unless the ray looks behind its
+/// They are sorted in registers where the lanes can sort so many, unless the ray looks behind its
 /// origin: its entry distances do not suit that. Otherwise a few are sorted as integers, and
 /// more than a few one by one.
 #[inline(always)]

@@ -26,7 +26,7 @@ use core::marker::PhantomData;
 /// A wide tree of one encoding.
 type Wide<S, F> = WideTree<S, WIDTH, F>;
 
-/// Kernels for leaves whose operands describe their primitives completely.
+/// Kernels for leaves whose operands describe their primitives completely, in either encoding.
 #[expect(clippy::type_complexity, reason = "a table of functions says what each takes")]
 pub struct PackedKernels<S, F> {
     pub closest: fn(&Wide<S, F>, Backend, &dyn PutOperands<S>, &Ray<S>, &mut Found<S>),
@@ -107,7 +107,7 @@ impl<'q, S: Scalar, F: Encoding<S, WIDTH>, T: LaneTest<S>, Q: PackedQuery<S>, K:
         check_operands::<S, F, T>(tree);
         let is_ordinary = is_ordinary(isa, ray);
         if !tree.is_ordinary() || !(is_ordinary || suits::<S, T>(ray)) {
-            return Self::run_otherwise(backend, tree, put, ray, room);
+            return Self::run_general(backend, tree, put, ray, room);
         }
         let slabs = Slabs::new(ray);
         let mut visitor = PackedLeaves::<S, T, Q, W>::new(ray, &slabs);
@@ -117,13 +117,7 @@ impl<'q, S: Scalar, F: Encoding<S, WIDTH>, T: LaneTest<S>, Q: PackedQuery<S>, K:
 
     #[cold]
     #[inline(never)]
-    fn run_otherwise(
-        backend: Backend,
-        tree: Self::A,
-        put: Self::B,
-        ray: Self::C,
-        room: Self::D,
-    ) -> Q::Answer {
+    fn run_general(backend: Backend, tree: Self::A, put: Self::B, ray: Self::C, room: Self::D) -> Q::Answer {
         Q::run_on(&K::KERNELS, tree, backend, put, ray, room)
     }
 }
@@ -253,63 +247,70 @@ impl<S: Scalar, F: Encoding<S, WIDTH>> Kernel for OpenWide<'_, S, F> {
 #[inline(always)]
 fn with_lane_test<S: Scalar, F: EncodingKernels<S>, T: LaneTest<S>>(
     tree: &Wide<S, F>,
-    isa: Backend,
+    backend: Backend,
     put: &dyn PutOperands<S>,
     ray: &Ray<S>,
     wanted: Wanted,
     kernel: impl FnOnce(&mut RayState<S>, &mut dyn LeafTest<S>),
 ) -> (Found<S>, Counters) {
     check_operands::<S, F, T>(tree);
-    let mut asked = RayState::new(ray);
+    let mut state = RayState::new(ray);
     if ray.is_valid() {
         let suits = tree.is_ordinary() && T::suits(ray);
-        kernel(&mut asked, &mut LaneLeafTest::<S, T>::new(put, wanted, suits.then_some(isa)));
+        kernel(&mut state, &mut LaneLeafTest::<S, T>::new(put, wanted, suits.then_some(backend)));
     }
-    (Found { t: asked.ray.t_max, index: asked.index, details: asked.details }, asked.steps)
+    (Found { t: state.ray.t_max, index: state.index, details: state.details }, state.steps)
 }
 
 /// Makes the kernels with a dynamic leaf test.
 ///
 /// They are for a scalar, an encoding and a test.
 macro_rules! dynamic {
-    ($scalar:ty, $form:ty, $test:ty) => {{
-        type Tree = Wide<$scalar, $form>;
+    ($scalar:ty, $encoding:ty, $test:ty) => {{
+        type Tree = Wide<$scalar, $encoding>;
         type Put<'a> = &'a dyn PutOperands<$scalar>;
 
         #[inline(never)]
-        fn closest(tree: &Tree, isa: Backend, put: Put<'_>, ray: &Ray<$scalar>, found: &mut Found<$scalar>) {
-            *found = counted(tree, isa, put, ray, true).0;
+        fn closest(
+            tree: &Tree,
+            backend: Backend,
+            put: Put<'_>,
+            ray: &Ray<$scalar>,
+            found: &mut Found<$scalar>,
+        ) {
+            *found = counted(tree, backend, put, ray, true).0;
         }
         #[inline(never)]
-        fn any(tree: &Tree, isa: Backend, put: Put<'_>, ray: &Ray<$scalar>) -> bool {
-            counted(tree, isa, put, ray, false).0.index != NO_PRIMITIVE
+        fn any(tree: &Tree, backend: Backend, put: Put<'_>, ray: &Ray<$scalar>) -> bool {
+            counted(tree, backend, put, ray, false).0.index != NO_PRIMITIVE
         }
         #[inline(never)]
         fn open(
             tree: &Tree,
-            isa: Backend,
+            backend: Backend,
             put: Put<'_>,
             ray: &Ray<$scalar>,
             ahead: &mut BestFirst<$scalar, Reference>,
         ) -> Counters {
-            with_lane_test::<_, $form, $test>(tree, isa, put, ray, Wanted::All, |ray, leaf_test| {
-                (<$form as EncodingKernels<$scalar>>::DYN.open)(tree, isa, ray, leaf_test, ahead);
+            with_lane_test::<_, $encoding, $test>(tree, backend, put, ray, Wanted::All, |ray, leaf_test| {
+                (<$encoding as EncodingKernels<$scalar>>::DYN.open)(tree, backend, ray, leaf_test, ahead);
             })
             .1
         }
         #[inline(never)]
         fn counted(
             tree: &Tree,
-            isa: Backend,
+            backend: Backend,
             put: Put<'_>,
             ray: &Ray<$scalar>,
             is_closest: IsClosest,
         ) -> (Found<$scalar>, Counters) {
-            const KERNELS: DynKernels<$scalar, Tree, Reference> = <$form as EncodingKernels<$scalar>>::DYN;
+            const KERNELS: DynKernels<$scalar, Tree, Reference> =
+                <$encoding as EncodingKernels<$scalar>>::DYN;
             let (wanted, kernel) =
                 if is_closest { (Wanted::Closest, KERNELS.closest) } else { (Wanted::Any, KERNELS.any) };
-            with_lane_test::<_, $form, $test>(tree, isa, put, ray, wanted, |ray, leaf_test| {
-                kernel(tree, isa, ray, leaf_test)
+            with_lane_test::<_, $encoding, $test>(tree, backend, put, ray, wanted, |ray, leaf_test| {
+                kernel(tree, backend, ray, leaf_test)
             })
         }
         PackedKernels { closest, any, open, counted }
@@ -320,21 +321,29 @@ macro_rules! dynamic {
 ///
 /// They are for a scalar, an encoding and a test.
 macro_rules! inlined {
-    ($scalar:ty, $form:ty, $test:ty) => {{
-        type Tree = Wide<$scalar, $form>;
+    ($scalar:ty, $encoding:ty, $test:ty) => {{
+        type Tree = Wide<$scalar, $encoding>;
         type Put<'a> = &'a dyn PutOperands<$scalar>;
         struct Dynamic;
-        impl Fallback<$scalar, $form> for Dynamic {
-            const KERNELS: PackedKernels<$scalar, $form> = dynamic!($scalar, $form, $test);
+        impl Fallback<$scalar, $encoding> for Dynamic {
+            const KERNELS: PackedKernels<$scalar, $encoding> = dynamic!($scalar, $encoding, $test);
         }
 
         #[inline(never)]
-        fn closest(tree: &Tree, isa: Backend, put: Put<'_>, ray: &Ray<$scalar>, found: &mut Found<$scalar>) {
-            isa.call::<Inlined<'_, $scalar, $form, $test, Found<$scalar>, Dynamic>>(tree, put, ray, found);
+        fn closest(
+            tree: &Tree,
+            backend: Backend,
+            put: Put<'_>,
+            ray: &Ray<$scalar>,
+            found: &mut Found<$scalar>,
+        ) {
+            backend.call::<Inlined<'_, $scalar, $encoding, $test, Found<$scalar>, Dynamic>>(
+                tree, put, ray, found,
+            );
         }
         #[inline(never)]
-        fn any(tree: &Tree, isa: Backend, put: Put<'_>, ray: &Ray<$scalar>) -> bool {
-            isa.call::<Inlined<'_, $scalar, $form, $test, Any<$scalar>, Dynamic>>(tree, put, ray, ())
+        fn any(tree: &Tree, backend: Backend, put: Put<'_>, ray: &Ray<$scalar>) -> bool {
+            backend.call::<Inlined<'_, $scalar, $encoding, $test, Any<$scalar>, Dynamic>>(tree, put, ray, ())
         }
         PackedKernels { closest, any, ..<Dynamic as Fallback<_, _>>::KERNELS }
     }};
@@ -342,27 +351,27 @@ macro_rules! inlined {
 
 /// Makes the kernels for leaves of any primitive, for a scalar and an encoding.
 macro_rules! dyn_leaves {
-    ($scalar:ty, $form:ty) => {{
-        type Tree = Wide<$scalar, $form>;
+    ($scalar:ty, $encoding:ty) => {{
+        type Tree = Wide<$scalar, $encoding>;
         type Test<'a> = &'a mut dyn LeafTest<$scalar>;
 
         #[inline(never)]
-        fn closest(tree: &Tree, isa: Backend, ray: &mut RayState<$scalar>, leaf_test: Test<'_>) {
-            isa.run(DynWide::<_, _, true> { tree, ray, leaf_test });
+        fn closest(tree: &Tree, backend: Backend, ray: &mut RayState<$scalar>, leaf_test: Test<'_>) {
+            backend.run(DynWide::<_, _, true> { tree, ray, leaf_test });
         }
         #[inline(never)]
-        fn any(tree: &Tree, isa: Backend, ray: &mut RayState<$scalar>, leaf_test: Test<'_>) {
-            isa.run(DynWide::<_, _, false> { tree, ray, leaf_test });
+        fn any(tree: &Tree, backend: Backend, ray: &mut RayState<$scalar>, leaf_test: Test<'_>) {
+            backend.run(DynWide::<_, _, false> { tree, ray, leaf_test });
         }
         #[inline(never)]
         fn open(
             tree: &Tree,
-            isa: Backend,
+            backend: Backend,
             ray: &mut RayState<$scalar>,
             leaf_test: Test<'_>,
             ahead: &mut BestFirst<$scalar, Reference>,
         ) {
-            isa.run(OpenWide { tree, ray, leaf_test, ahead });
+            backend.run(OpenWide { tree, ray, leaf_test, ahead });
         }
         DynKernels { closest, any, open }
     }};

@@ -6,8 +6,8 @@
 //! ```text
 //! query --> kernel: nodes by box_test and child_order, deferred children on the traversal_stack
 //!             at a leaf, a visitor:
-//!               settled in lanes   the leaf's own test (leaf::LaneTest)
-//!               asked              one dynamic call for the whole leaf (leaf_test::LeafTest)
+//!               PackedLeaves   the leaf's own test, in lanes (leaf::LaneTest)
+//!               DynLeaves      one dynamic call for the whole leaf (leaf_test::LeafTest)
 //! query <-- t, index, and the details from which the payload is made
 //! ```
 

@@ -50,8 +50,9 @@ impl<'m, S: Copy + PartialOrd> TraversalStack<'m, S> {
     #[inline(always)]
     pub fn push(&mut self, reference: Reference, entry: S) {
         debug_assert!(self.len < CAPACITY);
-        // SAFETY: no path defers more than `MAX_STACK` children: `layout::collapse`
-        // builds no such tree.
+        // SAFETY: the path to a node defers at most `MAX_STACK` children, since
+        // `layout::collapse` builds no other tree, and the node at most 15 more: `CAPACITY` has
+        // room for both.
         unsafe {
             self.memory.references.get_unchecked_mut(self.len).write(reference);
             self.memory.entries.get_unchecked_mut(self.len).write(entry);
@@ -65,8 +66,8 @@ impl<'m, S: Copy + PartialOrd> TraversalStack<'m, S> {
     #[inline(always)]
     pub fn windows(&mut self) -> (&mut Window<Reference>, &mut Window<S>) {
         debug_assert!(self.len <= MAX_STACK);
-        // SAFETY: `len` is at most `MAX_STACK`, since `layout::collapse` builds no tree that needs
-        // more. So 16 more are inside of the memory.
+        // SAFETY: `len` is what the path to a node defers, at most `MAX_STACK`, since
+        // `layout::collapse` builds no other tree. So 16 more are inside of the memory.
         unsafe {
             (
                 &mut *self.memory.references.as_mut_ptr().add(self.len).cast(),

@@ -28,7 +28,8 @@ pub(super) trait Visitor<S: Scalar> {
     ///
     /// # Safety
     ///
-    /// `leaf` is one of the tree's leaves.
+    /// `leaf` is one of the tree's leaves, and the tree has as many operands of each primitive as
+    /// the visitor takes.
     unsafe fn leaf<I: Isa, F: Encoding<S, N>, const N: usize>(
         &mut self,
         isa: I,

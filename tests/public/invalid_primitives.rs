@@ -18,14 +18,14 @@ use rand_pcg::Pcg64Mcg;
 fn assert_rejected_or_skipped<P: Intersect<Payload: Payload> + Clone>(
     good: &[P],
     bad: &P,
-    flaw: InvalidBox,
+    reason: InvalidBox,
     rays: &[Ray<P::Scalar>],
 ) {
     for index in [0, good.len() / 2, good.len()] {
         let mut primitives = good.to_vec();
         primitives.insert(index, bad.clone());
         let rejected = Bvh::build(&primitives).map(|bvh| bvh.len());
-        assert_eq!(rejected, Err(BuildError::InvalidPrimitive { index, flaw }));
+        assert_eq!(rejected, Err(BuildError::InvalidPrimitive { index, reason }));
         let bvh = Bvh::builder().on_invalid(OnInvalid::Skip).build(&primitives).unwrap();
         assert_eq!((bvh.len(), bvh.skipped()), (good.len(), &[index as u32][..]));
         for ray in rays {
@@ -49,12 +49,12 @@ fn a_nan_or_an_infinity_in_any_corner_of_a_triangle<M: Mode>() {
         (f64::INFINITY, InvalidBox::InfiniteBox),
         (f64::NEG_INFINITY, InvalidBox::InfiniteBox),
     ];
-    for (bad, flaw) in flaws {
+    for (bad, reason) in flaws {
         for place in 0..9 {
             let mut triangle = triangles[7];
             let corner = [&mut triangle.a, &mut triangle.b, &mut triangle.c].into_iter().nth(place / 3);
             corner.unwrap()[place % 3] = M::Number::from_f64(bad);
-            assert_rejected_or_skipped(&good, &M::of(triangle), flaw, &rays);
+            assert_rejected_or_skipped(&good, &M::of(triangle), reason, &rays);
         }
     }
 }
@@ -71,7 +71,7 @@ fn spheres_and_boxes() {
     let boxes: Vec<_> = spheres.iter().map(Primitive::aabb).collect();
     // A minimum above its maximum is reported first, infinite or not.
     let (nan, infinite, inverted) = (InvalidBox::NanBox, InvalidBox::InfiniteBox, InvalidBox::InvertedBox);
-    for (bad, flaw, as_min, as_max, as_radius) in [
+    for (bad, reason, as_min, as_max, as_radius) in [
         (f32::NAN, nan, nan, nan, nan),
         (f32::INFINITY, infinite, inverted, infinite, infinite),
         (f32::NEG_INFINITY, infinite, infinite, inverted, inverted),
@@ -79,7 +79,7 @@ fn spheres_and_boxes() {
         for axis in 0..3 {
             let (mut sphere, mut lower, mut upper) = (spheres[3], boxes[3], boxes[3]);
             (sphere.center[axis], lower.min[axis], upper.max[axis]) = (bad, bad, bad);
-            assert_rejected_or_skipped(&spheres, &sphere, flaw, &rays);
+            assert_rejected_or_skipped(&spheres, &sphere, reason, &rays);
             assert_rejected_or_skipped(&boxes, &lower, as_min, &rays);
             assert_rejected_or_skipped(&boxes, &upper, as_max, &rays);
         }

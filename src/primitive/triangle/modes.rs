@@ -36,7 +36,7 @@ pub struct Fast<P>(pub P);
 /// exact arithmetic would name. The origin must be inside by more than the rounding of the
 /// coordinates, since each ray sees the corners moved by as much. Of rays that start within 1e-6 of
 /// an edge of the unit cube, 0 of 20,000 leave it; of rays that start closer, some do (measured:
-/// docs/decisions.md, 30).
+/// docs/decisions.md, 36).
 ///
 /// The ray of a hit passes the triangle within a few roundings of the distances to its corners. The
 /// point of the hit is as close, unless the ray is in the triangle's plane up to rounding. Then t

@@ -14,7 +14,7 @@ use crate::geometry::{RayFrame, Scalar, cross, dot, max, min};
 /// Refused, on three scenes: the test of Moller and Trumbore, with its products grouped around
 /// the normal (4 % faster to 17 % slower). Also refused: an affine map to the unit triangle,
 /// computed beforehand (Baldwin and Weber, JCGT 2016), which takes twice the memory and is
-/// slower (measured: docs/decisions.md, 31). Three lanes for three corners suit one
+/// slower (measured: docs/decisions.md, 37). Three lanes for three corners suit one
 /// triangle at a time best.
 #[inline(always)]
 pub(super) fn sheared<S: Scalar>(corners: [[S; 3]; 3], shear: &RayFrame<S>) -> Option<(S, Barycentrics<S>)> {
