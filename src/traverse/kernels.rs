@@ -411,7 +411,7 @@ impl ScalarKernels for f32 {
     const PACKED: [PackedKernels<Self, Packed>; 4] = [
         inlined!(f32, Packed, FastLeaf),
         inlined!(f32, Packed, WatertightLeaf),
-        dynamic!(f32, Packed, PreciseLeaf),
+        inlined!(f32, Packed, PreciseLeaf),
         inlined!(f32, Packed, SphereLeaf),
     ];
     const COMPACT: [PackedKernels<Self, Compact>; 4] = [
