@@ -21,7 +21,7 @@ impl Primitive for Copy<'_> {
 impl Intersect for Copy<'_> {
     type Payload = usize; // index of the mesh's triangle
     type Leaf = OneByOne;
-    /// Asks the mesh, whose query prunes by the ray's end: the closest hit so far.
+    /// The ray ends at the closest hit so far, so the mesh's query leaves out what is farther.
     fn intersect(&self, ray: &Ray) -> Option<(f32, usize)> {
         let ([ox, oy, oz], [x, y, z]) = (ray.origin, self.place);
         let hit = self.mesh.closest_hit(&Ray { origin: [ox - x, oy - y, oz - z], ..*ray })?;

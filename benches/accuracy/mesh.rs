@@ -5,7 +5,7 @@ use bvhkit::Triangle;
 use std::collections::HashMap;
 use std::fmt;
 
-/// A mesh whose triangles share the bits of their corners.
+/// A mesh; corners that triangles share are equal bit for bit.
 #[derive(Clone)]
 pub struct Mesh {
     pub name: String,

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 /// Returns the distance between the ray's line and the triangle's nearest edge.
 ///
-/// The unit is a rounding of `f32` (2^-24) of the distance to the farthest corner. The result is
+/// The unit is 2^-24 times the distance from the origin to the farthest corner. The result is
 /// computed in `f64` and is good to a millionth of that unit.
 pub fn roundings(triangle: &Triangle, ray: &Ray) -> f64 {
     let wide = |point: [f32; 3]| DVec3::from(point.map(f64::from));

@@ -6,7 +6,7 @@ use crate::timing;
 use crate::tracer::Contestant;
 use std::hint::black_box;
 
-/// Returns millions of closest hits per second for each contestant.
+/// Returns millions of rays per second for each contestant, traced for the closest hit.
 ///
 /// The rays are primary, diffuse, shadow and random, `rays` of each kind.
 pub fn mega_rays(

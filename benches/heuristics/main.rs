@@ -6,7 +6,7 @@
 //! `cargo bench --bench heuristics` measures with criterion, then prints one table of everything
 //! side by side. Its times are taken after the answers are compared with those of the naive
 //! reference. All of it runs on one thread. A filter, such as `-- build/terrain`, applies to
-//! criterion alone: one that matches nothing leaves the table.
+//! criterion alone: one that matches nothing prints just the table.
 
 mod check;
 mod groups;

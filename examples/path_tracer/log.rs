@@ -18,8 +18,8 @@ pub fn plain(text: impl Display) {
 
 /// Runs a step of the program between the two halves of a printed line.
 ///
-/// The first half is `text`, the second tells how the step ended. After a success, `done` makes it
-/// from the time that the step took.
+/// The first half is `text`, the second tells how the step ended. On success it is `done` of the
+/// time that the step took.
 pub fn step<T, E>(
     text: impl Display,
     done: impl Fn(Duration) -> String,

@@ -1,7 +1,7 @@
 //! A minimal path tracer on top of `bvhkit`.
 //!
 //! It loads a scene, builds a tree, renders, and saves a PNG.
-//! `cargo run --release --example path_tracer` renders a Cornell box that needs no file;
+//! `cargo run --release -p path_tracer` renders a Cornell box that needs no file;
 //! `-- --help` lists the options.
 
 mod cli;

@@ -76,7 +76,9 @@ impl<'m> Curve<'m> {
     }
 }
 
-/// Returns the place where the highest bit changes, among at least two keys.
+/// Returns the index of the first key that has the highest bit in which any two keys differ.
+///
+/// There are at least two keys.
 pub(super) fn border(keys: &[u64]) -> usize {
     let highest = (keys[0] ^ keys[keys.len() - 1]).ilog2();
     keys.partition_point(|key| key >> highest & 1 == 0)
@@ -85,8 +87,8 @@ pub(super) fn border(keys: &[u64]) -> usize {
 /// Returns the difference of the keys on both sides of a border.
 ///
 /// The greater the difference, the higher the node between the keys. At the ends of the list, it
-/// is `u64::MAX`. Keys differ by less: the lowest bit is left out, since the differences at two
-/// borders in a row never begin with the same bit.
+/// is `u64::MAX`. The shift keeps the differences of keys below that. The lost bit never decides:
+/// the differences at the two ends of a part have distinct highest bits.
 #[inline(always)]
 pub(super) fn difference(keys: &[u64], border: usize) -> u64 {
     match (border, keys.get(border)) {

@@ -14,18 +14,18 @@
 //! operands alone, and kernels for these kinds are compiled in this crate, for each scalar and
 //! instruction set, whatever type the operands come from.
 
+mod late_bound;
 mod own;
 mod precise;
 mod rows;
 mod spheres;
-mod stored;
 mod triangles;
 
+pub(crate) use late_bound::{StoredHits, TestLanes};
 pub use own::{OneByOne, Sieve, Sieved};
 pub use precise::PreciseLeaf;
 pub use rows::Operands;
 pub use spheres::SphereLeaf;
-pub(crate) use stored::{StoredHits, TestLanes};
 pub use triangles::{FastLeaf, WatertightLeaf};
 
 use crate::geometry::{Ray, Scalar, Slabs, max};

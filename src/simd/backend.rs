@@ -222,6 +222,10 @@ fn call<I: Isa, R: Routine>(isa: I, backend: Backend, a: R::A, b: R::B, c: R::C,
     }
 }
 
+#[cfg_attr(
+    not(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2")),
+    expect(dead_code, reason = "AVX-512 alone has doubled vectors")
+)]
 #[inline(always)]
 fn call_doubled<I: Isa, R: Routine>(
     isa: I,

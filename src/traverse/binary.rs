@@ -15,7 +15,7 @@
 
 use super::best_first::BestFirst;
 use super::binary_stack::Stack;
-use super::leaf_test::{LeafTest, LeafView, RayState};
+use super::leaf_call::{LeafTest, LeafView, RayState};
 use crate::geometry::{Scalar, Slabs, max, min};
 use crate::simd::Lanes4;
 use crate::tree::{Child, MAX_DEPTH, Node, Tree};

@@ -12,7 +12,7 @@
 use super::best_first::BestFirst;
 use super::box_test::is_ordinary;
 use super::lane_test::{LaneLeafTest, Wanted};
-use super::leaf_test::{LeafTest, RayState};
+use super::leaf_call::{LeafTest, RayState};
 use super::recorder::Counters;
 use super::visitor::{Any, DynLeaves, Found, PackedLeaves, Query};
 use super::{binary, wide};

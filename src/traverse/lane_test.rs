@@ -6,7 +6,7 @@
 
 use super::best_first::{Details, QueuedHit};
 use super::child_order::next_lane;
-use super::leaf_test::{LeafTest, LeafView, RayState};
+use super::leaf_call::{LeafTest, LeafView, RayState};
 use crate::geometry::Scalar;
 use crate::leaf::{GATHERED, LEAF_WIDTH, LaneTest, PutOperands, StoredHits, TestLanes, operands_of};
 use crate::simd::Backend;

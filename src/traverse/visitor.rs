@@ -1,7 +1,7 @@
 //! The visitors of a wide tree: the work of a query at each leaf.
 
 use super::child_order::next_lane;
-use super::leaf_test::{LeafTest, LeafView, RayState};
+use super::leaf_call::{LeafTest, LeafView, RayState};
 use crate::geometry::{Ray, Scalar, Slabs};
 use crate::layout::{Encoding, NO_PRIMITIVE, Reference, WideTree};
 use crate::leaf::{LEAF_WIDTH, LaneHits, LaneTest, Operands, operands_of};

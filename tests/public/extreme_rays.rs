@@ -81,7 +81,7 @@ fn the_interval_is_closed_at_a_surface<M: Mode>() {
     }
 }
 
-/// Traces a ray again with the interval [t, t] of each hit and finds it there.
+/// Traces a ray again with the interval [t, t] of each hit, and finds a hit at that t.
 fn a_hit_is_found_again_at_its_own_t<M: Mode>() {
     let scene: Vec<_> =
         triangles::<M::Number>(&soup(60), |_, x| (x * 4.0).round()).into_iter().map(M::of).collect();
@@ -104,7 +104,7 @@ fn an_axis_aligned_triangle_behind_the_origin_is_hit_at_a_negative_t<M: Mode>() 
     assert!(t.is_some_and(|t| (t + 5.0).abs() < 1e-5), "{t:?}");
 }
 
-/// Box tests treat a subnormal component as zero, since its inverse is infinite.
+/// Box tests treat the least subnormal component as zero, since its inverse is infinite.
 ///
 /// The hits have to be the same as with a component of zero.
 fn subnormal_components_beside_ordinary_ones<M: Mode>() {

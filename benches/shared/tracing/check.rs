@@ -21,7 +21,7 @@ pub struct Check {
 /// # Panics
 ///
 /// If ours do not agree, bit for bit, with the naive reference and with each other: in both
-/// queries, one by one and in batches, in both orders.
+/// queries, one by one and in batches, in both orders; or if all hits differ.
 pub fn check(scene: &str, family: &Family, naive_tests: usize) -> Vec<Check> {
     let tests = naive_tests / family.kinds.len();
     family.kinds.iter().map(|kind| check_kind(scene, family, kind, tests)).collect()

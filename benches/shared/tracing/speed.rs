@@ -27,7 +27,7 @@ struct Contestant<'a> {
 
 /// Returns millions of rays per second for each member of each family.
 ///
-/// `None` stands for a member without such a query. The members take turns.
+/// `None`: the member cannot answer such a query. The members take turns.
 ///
 /// Every thread traces all the rays, each from another start. So each thread
 /// has as much to do as one alone.
@@ -46,8 +46,8 @@ pub fn measure(families: &[Family], kind: usize, pass: Pass, repetitions: usize)
         }
         speeds.push(None);
     }
-    // The untimed run fills the caches, which the other contestants have emptied meanwhile. That
-    // would take longer than the rays.
+    // The other contestants emptied the caches. An untimed run fills them again: that may take
+    // longer than the rays.
     let trace = |i: usize| run(&contestants[i].jobs);
     let times = interleaved(contestants.len(), repetitions, trace, trace);
     for (contestant, time) in contestants.iter().zip(times) {

@@ -34,7 +34,8 @@ const PROFILES: [[(f32, f32, f32); 4]; 6] = [
 
 /// The halves of handle and spout with y <= 0, two patches each.
 ///
-/// Rows run along the tube. In a row, the first and the last point are in the plane of symmetry.
+/// Each row runs around half of the tube, the next row is farther along it. In a row, the first and
+/// the last point are in the plane of symmetry.
 #[rustfmt::skip]
 const HALVES: [[[f32; 3]; 16]; 4] = [
     // Handle, upper part.

@@ -21,7 +21,7 @@ pub(super) struct Bins<'r, S, const N: usize> {
     pub area_scale: S,
 }
 
-/// A plane, and the sum of its sides' areas times their counts.
+/// A plane, and the sum over both sides of area times count.
 pub(super) struct Plane<S> {
     pub weighted_area: S,
     pub proposal: Proposal<S>,
@@ -41,7 +41,7 @@ struct Filled<S: Scalar, I: Isa, const N: usize> {
 }
 
 impl<S: Scalar, const N: usize> Kernel for Bins<'_, S, N> {
-    /// More bins are rarely used.
+    /// More than 16 bins are rare, so they get no wide kernel.
     const IS_WIDE: bool = N <= 16;
     const USES_AVX512: bool = false;
     /// `None` if all centroids are in one bin.
@@ -69,7 +69,8 @@ impl<S: Scalar, const N: usize> Bins<'_, S, N> {
     fn fill<I: Isa>(&self, isa: I, scale: [S; 3]) -> Filled<S, I, N> {
         let grid = Grid::new(isa, self.span.min, scale, self.count);
         let mut filled = Filled::empty(isa);
-        // More bins would take more of the stack than a worker may have.
+        // Two sets of more than 16 bins could overflow a worker's stack, and few references do not
+        // pay for a second set.
         if N > 16 || self.references.len() < 8 * N {
             for reference in self.references {
                 filled.count(isa, &grid, reference);
@@ -81,7 +82,7 @@ impl<S: Scalar, const N: usize> Bins<'_, S, N> {
         let mut others = Filled::<S, I, N>::empty(isa);
         let (pairs, rest) = self.references.as_chunks::<2>();
         for [first, second] in pairs {
-            // Two references of `f32` share a cache line.
+            // Two references of `f32` are as long as a cache line.
             prefetch_ahead(first);
             filled.count(isa, &grid, first);
             others.count(isa, &grid, second);
@@ -97,7 +98,8 @@ impl<S: Scalar, const N: usize> Bins<'_, S, N> {
         filled
     }
 
-    /// Returns the cost of a plane before each bin; NaN where a side is empty.
+    /// Returns the cost of a plane before each bin, NaN where a side is empty; infinity before the
+    /// first.
     #[inline(always)]
     fn costs<I: Isa>(&self, isa: I, filled: &Filled<S, I, N>, axis: usize) -> [S; N] {
         let (boxes, counts) = (&filled.boxes[axis], &filled.counts[axis]);
@@ -131,7 +133,7 @@ impl<S: Scalar, I: Isa, const N: usize> Filled<S, I, N> {
         Self { boxes: [[S::Times8::splat(isa, S::NEG_INFINITY); N]; 3], counts: [[0; N]; 3] }
     }
 
-    /// Returns the boxes of the bins before `border`, and of those from it on.
+    /// Returns the box around the bins before `border`, and the box around the rest.
     #[inline(always)]
     fn sides(&self, isa: I, axis: usize, border: usize) -> [S::Times8<I>; 2] {
         let nothing = S::Times8::splat(isa, S::NEG_INFINITY);

@@ -5,8 +5,8 @@ use crate::geometry::Scalar;
 
 /// Splits the longest axis of the box around the centroids in its middle.
 ///
-/// The box is that of the centroids, not of the node: unless all centroids are one point, or
-/// adjacent numbers, there is a centroid on either side, so no side is empty.
+/// The box is that of the centroids, not that of the node. So each side has a centroid, unless all
+/// centroids coincide or are adjacent numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Midpoint;
 

@@ -17,8 +17,9 @@ use alloc::vec::Vec;
 /// GPUs, 2009: the linear hierarchy).
 ///
 /// A quick build, for scenes that change each frame. It is blind to sizes, so rays visit more
-/// nodes; [`Optimise`](crate::Optimise) saves some of them. Primitives in the same of 65,536 cells
-/// on each axis stay in the order of the input.
+/// nodes; [`Optimise`](crate::Optimise) saves some of them. The curve has at most 65,536 cells on
+/// each axis, fewer for more than 65,536 primitives. Primitives in the same cell stay in the order
+/// of the input.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Morton;
 
@@ -32,7 +33,7 @@ impl<S: Scalar> Heuristic<S> for Morton {
 
     /// Splits into equal halves.
     ///
-    /// It serves a heuristic that calls this one, but does not pass on its codes.
+    /// This is for heuristics that call this `split` without forwarding the codes.
     fn split(&self, node: &BuildNode<'_, S>) -> Split<S> {
         Median.split(node)
     }
