@@ -1,9 +1,9 @@
 //! AVX2, and the extensions that processors got together with it.
 
 use super::arch::*;
-use super::{halves, has};
+use super::{halves, has, with_features};
 use crate::simd::vector::vector;
-use crate::simd::{Backend, Isa, LeafLanes, Pair, Routine};
+use crate::simd::{Isa, Pair};
 
 /// The token that proves AVX2.
 #[derive(Clone, Copy, Debug)]
@@ -39,38 +39,7 @@ impl Isa for Avx2 {
     fn up_to_avx2(self) -> Self {
         self
     }
-    #[inline(always)]
-    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
-        #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-        fn with_instructions<R>(f: impl FnOnce() -> R) -> R {
-            f()
-        }
-        // SAFETY: the token proves that the processor has the instructions.
-        unsafe { with_instructions(f) }
-    }
-    #[inline(always)]
-    fn call<R: Routine, W: LeafLanes>(
-        self,
-        backend: Backend,
-        a: R::A,
-        b: R::B,
-        c: R::C,
-        d: R::D,
-    ) -> R::Output {
-        #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-        fn routine<I: Isa, R: Routine, W: LeafLanes>(
-            isa: I,
-            backend: Backend,
-            a: R::A,
-            b: R::B,
-            c: R::C,
-            d: R::D,
-        ) -> R::Output {
-            R::run::<I, W>(isa, backend, a, b, c, d)
-        }
-        // SAFETY: the token proves that the processor has the instructions.
-        unsafe { routine::<Self, R, W>(self, backend, a, b, c, d) }
-    }
+    with_features!("avx2,fma,bmi1,bmi2,lzcnt,popcnt");
 }
 
 vector! {

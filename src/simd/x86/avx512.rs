@@ -2,9 +2,9 @@
 #![expect(unused_unsafe, reason = "masks are integers: their operations are safe, those of vectors are not")]
 
 use super::arch::*;
-use super::{halves, has, sort};
+use super::{halves, has, sort, with_features};
 use crate::simd::vector::vector;
-use crate::simd::{Backend, Isa, LeafLanes, Pair, Routine, Window};
+use crate::simd::{Isa, Pair, Window};
 
 /// The token that proves AVX-512.
 #[derive(Clone, Copy, Debug)]
@@ -45,40 +45,7 @@ impl Isa for Avx512 {
     fn up_to_avx2(self) -> super::Avx2 {
         super::Avx2::of_avx512(self)
     }
-    #[inline(always)]
-    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
-        #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-        #[target_feature(enable = "avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
-        fn with_instructions<R>(f: impl FnOnce() -> R) -> R {
-            f()
-        }
-        // SAFETY: the token proves that the processor has the instructions.
-        unsafe { with_instructions(f) }
-    }
-    #[inline(always)]
-    fn call<R: Routine, W: LeafLanes>(
-        self,
-        backend: Backend,
-        a: R::A,
-        b: R::B,
-        c: R::C,
-        d: R::D,
-    ) -> R::Output {
-        #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-        #[target_feature(enable = "avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
-        fn routine<I: Isa, R: Routine, W: LeafLanes>(
-            isa: I,
-            backend: Backend,
-            a: R::A,
-            b: R::B,
-            c: R::C,
-            d: R::D,
-        ) -> R::Output {
-            R::run::<I, W>(isa, backend, a, b, c, d)
-        }
-        // SAFETY: the token proves that the processor has the instructions.
-        unsafe { routine::<Self, R, W>(self, backend, a, b, c, d) }
-    }
+    with_features!("avx2,fma,bmi1,bmi2,lzcnt,popcnt", "avx512f,avx512bw,avx512cd,avx512dq,avx512vl");
 }
 
 vector! {

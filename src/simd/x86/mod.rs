@@ -50,4 +50,42 @@ macro_rules! halves {
     };
 }
 
-use {halves, has};
+/// The methods of an `Isa` that run code below a function with these features enabled.
+macro_rules! with_features {
+    ($($features:literal),+) => {
+        #[inline(always)]
+        fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+            $(#[target_feature(enable = $features)])+
+            fn with_instructions<R>(f: impl FnOnce() -> R) -> R {
+                f()
+            }
+            // SAFETY: the token proves that the processor has the features.
+            unsafe { with_instructions(f) }
+        }
+        #[inline(always)]
+        fn call<R: crate::simd::Routine, W: crate::simd::LeafLanes>(
+            self,
+            backend: crate::simd::Backend,
+            a: R::A,
+            b: R::B,
+            c: R::C,
+            d: R::D,
+        ) -> R::Output {
+            $(#[target_feature(enable = $features)])+
+            fn routine<I: crate::simd::Isa, R: crate::simd::Routine, W: crate::simd::LeafLanes>(
+                isa: I,
+                backend: crate::simd::Backend,
+                a: R::A,
+                b: R::B,
+                c: R::C,
+                d: R::D,
+            ) -> R::Output {
+                R::run::<I, W>(isa, backend, a, b, c, d)
+            }
+            // SAFETY: as above.
+            unsafe { routine::<Self, R, W>(self, backend, a, b, c, d) }
+        }
+    };
+}
+
+use {halves, has, with_features};
